@@ -1,0 +1,32 @@
+#include "core/random/random_stream.h"
+
+#include <Random123/philox.h>
+
+#include <boost/random/normal_distribution.hpp>
+
+namespace fatmc {
+
+std::array<std::uint64_t, 4> philox4x64(const std::array<std::uint64_t, 4>& counter,
+                                        const std::array<std::uint64_t, 2>& key) {
+  r123::Philox4x64 generator;
+  const r123::Philox4x64::ctr_type c{{counter[0], counter[1], counter[2], counter[3]}};
+  const r123::Philox4x64::key_type k{{key[0], key[1]}};
+  const r123::Philox4x64::ctr_type out = generator(c, k);
+  return {out[0], out[1], out[2], out[3]};
+}
+
+RandomStream::RandomStream(const TrialSeed& trial, std::string_view stream_name)
+    : key_{trial.seed, name_hash(stream_name)}, counter_{0, trial.repetition, trial.cell, trial.study} {}
+
+void RandomStream::refill() {
+  block_ = philox4x64(counter_, key_);
+  ++counter_[0];
+  next_ = 0;
+}
+
+double RandomStream::normal() {
+  // Boost's ziggurat keeps no state between calls, so that a fresh object a call changes nothing.
+  return boost::random::normal_distribution<double>()(*this);
+}
+
+}  // namespace fatmc
