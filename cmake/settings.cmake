@@ -25,7 +25,8 @@ set(FATMC_MARCH "${FATMC_DEFAULT_MARCH}" CACHE STRING "value of -march")
 
 add_library(fatmc_settings INTERFACE)
 target_compile_options(fatmc_settings INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror)
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
+  -Wno-restrict)  # GCC 12 warns falsely inside std::string
 if(FATMC_MARCH)
   target_compile_options(fatmc_settings INTERFACE -march=${FATMC_MARCH})
 endif()

@@ -6,12 +6,13 @@
 
 namespace fatmc {
 
-std::array<std::uint64_t, 4> philox4x64(const std::array<std::uint64_t, 4>& counter,
+std::array<std::uint64_t, 4> philox_block(const std::array<std::uint64_t, 4>& counter,
                                         const std::array<std::uint64_t, 2>& key) {
-  r123::Philox4x64 generator;
-  const r123::Philox4x64::ctr_type c{{counter[0], counter[1], counter[2], counter[3]}};
-  const r123::Philox4x64::key_type k{{key[0], key[1]}};
-  const r123::Philox4x64::ctr_type out = generator(c, k);
+  r123::Philox4x64::ctr_type c;
+  r123::Philox4x64::key_type k;
+  for (unsigned i = 0; i < 4; ++i) c[i] = counter[i];
+  for (unsigned i = 0; i < 2; ++i) k[i] = key[i];
+  const r123::Philox4x64::ctr_type out = r123::Philox4x64()(c, k);
   return {out[0], out[1], out[2], out[3]};
 }
 
@@ -19,7 +20,7 @@ RandomStream::RandomStream(const TrialSeed& trial, std::string_view stream_name)
     : key_{trial.seed, name_hash(stream_name)}, counter_{0, trial.repetition, trial.cell, trial.study} {}
 
 void RandomStream::refill() {
-  block_ = philox4x64(counter_, key_);
+  block_ = philox_block(counter_, key_);
   ++counter_[0];
   next_ = 0;
 }

@@ -63,7 +63,7 @@ class RandomStream {
 };
 
 /// The generator itself, for known-answer tests: Philox4x64-10 of Random123.
-std::array<std::uint64_t, 4> philox4x64(const std::array<std::uint64_t, 4>& counter,
+std::array<std::uint64_t, 4> philox_block(const std::array<std::uint64_t, 4>& counter,
                                         const std::array<std::uint64_t, 2>& key);
 
 }  // namespace fatmc

@@ -1,0 +1,73 @@
+#include "campaigns/base/campaign_spec.h"
+
+#include "campaigns/base/decoder.h"
+#include "core/base/check.h"
+
+namespace fatmc {
+
+std::uint64_t CampaignSpec::trial_count() const {
+  std::uint64_t count = 0;
+  for (const Cell& cell : cells) count += cell.repetitions;
+  return count;
+}
+
+TrialKey CampaignSpec::key(std::uint64_t index) const {
+  for (std::uint32_t cell = 0; cell < cells.size(); ++cell) {
+    if (index < cells[cell].repetitions) return {cell, index};
+    index -= cells[cell].repetitions;
+  }
+  FATMC_CHECK(false, "the trial index is beyond the plan");
+}
+
+std::uint64_t CampaignSpec::index(TrialKey trial_key) const {
+  FATMC_CHECK(trial_key.cell < cells.size(), "the cell is beyond the plan");
+  std::uint64_t before = 0;
+  for (std::uint32_t cell = 0; cell < trial_key.cell; ++cell) before += cells[cell].repetitions;
+  return before + trial_key.repetition;
+}
+
+TrialSeed CampaignSpec::trial_seed(TrialKey trial_key) const {
+  return {seed, name_hash(study), name_hash(cells.at(trial_key.cell).name), trial_key.repetition};
+}
+
+std::string CampaignSpec::identity() const {
+  Tree meaning = tree;
+  meaning.set("cell", Tree{Tree::Array{}, {}, 0});
+  std::string text = canonical_text(meaning) + "seed " + std::to_string(seed);
+  for (const Cell& cell : cells) {
+    Tree own = cell.tree;
+    own.set("repetitions", Tree{std::int64_t{0}, {}, 0});
+    text += canonical_text(own);
+  }
+  return hex(sha256(text));
+}
+
+Result<CampaignSpec> decode_campaign(const Tree& tree) {
+  CampaignSpec spec;
+  spec.tree = tree;
+  Decoder top(tree, "");
+  if (const Tree* campaign = top.table("campaign")) {
+    Decoder table(*campaign, "campaign");
+    spec.study = table.text("study");
+    spec.name = table.text("name", spec.study);
+    spec.seed = static_cast<std::uint64_t>(table.integer("seed", {.low = 0}));
+    if (spec.name.find('/') != std::string::npos) table.reject("name", "holds a '/', write a plain file name");
+    top.take(table.finish());
+  }
+  for (const Tree* entry : top.tables("cell")) {
+    Decoder table(*entry, "cell");
+    Cell cell;
+    cell.name = table.text("name");
+    cell.repetitions = static_cast<std::uint64_t>(table.integer("repetitions", {.low = 1, .high = 1'000'000'000}));
+    cell.tree = *entry;
+    for (const Cell& other : spec.cells) {
+      if (other.name == cell.name) table.reject("name", "\"" + cell.name + "\" names two cells, write another name");
+    }
+    if (table.error()) top.take(fail(*table.error()));
+    spec.cells.push_back(std::move(cell));
+  }
+  if (top.error()) return fail(*top.error());
+  return spec;
+}
+
+}  // namespace fatmc
