@@ -1,5 +1,6 @@
 #include "campaigns/base/experiment.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "campaigns/base/decoder.h"
@@ -7,21 +8,13 @@
 namespace fatmc {
 namespace {
 
-constexpr double kDegree = kPi / 180.0;
-
-template <std::size_t N>
-std::array<double, N> scaled(const std::vector<double>& values, double factor) {
-  std::array<double, N> out{};
-  for (std::size_t i = 0; i < N; ++i) out[i] = values[i] * factor;
-  return out;
-}
-
 Status decode_excitation(const Tree& tree, double rate_hz, Excitation& out) {
   Decoder table(tree, "excitation");
   out.period_s = table.real("period_s", {.low = 0.1, .high = 1e5});
   out.periods = static_cast<int>(table.integer("periods", {.low = 2, .high = 1000}));
   out.ranges = decode_ranges(table, "ranges_hz");
-  out.amplitude_rad_s = scaled<3>(table.reals("amplitude_rad_s", 3, {.low = 0.0, .high = 10.0}), 1.0);
+  const std::vector<double> amplitude = table.reals("amplitude_rad_s", 3, {.low = 0.0, .high = 10.0});
+  std::copy(amplitude.begin(), amplitude.end(), out.amplitude_rad_s.begin());
   if (Status status = table.finish(); !status) return status;
   return resolve_excitation(out, rate_hz, tree);
 }
@@ -75,23 +68,7 @@ Status resolve_excitation(Excitation& excitation, double rate_hz, const Tree& wh
   return {};
 }
 
-Result<Imu> decode_imu(const Tree& tree) {
-  Decoder table(tree, "imu");
-  table.choice("kind", {"imu"});
-  Imu out;
-  out.grade = table.text("grade");
-  out.bias_rad_s = scaled<3>(table.reals("bias_deg_h", 3, {.low = -1e6, .high = 1e6}), kDegree / 3600.0);
-  out.scale_error = scaled<3>(table.reals("scale_ppm", 3, {.low = -5e5, .high = 5e5}), 1e-6);
-  out.misalignment_rad = scaled<6>(table.reals("misalignment_deg", 6, {.low = -45.0, .high = 45.0}), kDegree);
-  // N in deg/√h: per √s it is 1/60 of that.
-  out.noise_rad_sqrt_s = table.real("angle_random_walk_deg_sqrt_h", {.low = 0.0, .high = 1e3}) * kDegree / 60.0;
-  out.range_rad_s = table.real("range_deg_s", {.low = 0.0, .high = 1e5}) * kDegree;
-  out.bits = static_cast<int>(table.integer("bits", {.low = 1, .high = 52}));
-  if (Status status = table.finish(); !status) return fail(status.error());
-  return out;
-}
-
-Result<Experiment> decode_experiment(const Tree& tree) {
+Result<Experiment> decode_experiment(const Tree& tree, const AircraftModel& model) {
   Experiment out;
   Decoder top(tree, "");
   top.choice("kind", {"experiment"});
@@ -103,9 +80,12 @@ Result<Experiment> decode_experiment(const Tree& tree) {
     top.take(table.finish());
   }
   if (const Tree* imu = top.table("imu", false)) {
-    Result<Imu> decoded = decode_imu(*imu);
-    if (decoded) out.flight.imu = *decoded;
-    else top.take(fail(decoded.error()));
+    Decoder table(*imu, "imu");
+    std::vector<std::string> grades = {"none"};
+    for (const Imu& unit : model.imus) grades.push_back(unit.grade);
+    const std::string grade = table.choice("grade", grades);
+    if (const Imu* unit = model.imu(grade)) out.flight.imu = *unit;
+    top.take(table.finish());
   }
   if (const Tree* excitation = top.table("excitation")) {
     if (!top.error()) top.take(decode_excitation(*excitation, out.flight.rate_hz, out.excitation));

@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "campaigns/base/aircraft_model.h"
 #include "campaigns/base/tree.h"
 #include "core/base/error.h"
 #include "core/flight/flight.h"
@@ -32,8 +33,9 @@ struct Experiment {
 class Decoder;
 /// Rows [first, last, step] in Hz.
 std::vector<FrequencyRange> decode_ranges(Decoder& table, std::string_view key);
-Result<Imu> decode_imu(const Tree& tree);
-Result<Experiment> decode_experiment(const Tree& tree);
+
+/// `model` brings the gyros that the experiment names by grade.
+Result<Experiment> decode_experiment(const Tree& tree, const AircraftModel& model);
 
 /// Lines and samples of a period from ranges, period and rate; `where` names the table for messages.
 Status resolve_excitation(Excitation& excitation, double rate_hz, const Tree& where);

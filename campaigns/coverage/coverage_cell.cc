@@ -51,10 +51,10 @@ Result<CoverageCell> decode_cell(const CampaignSpec& spec, std::uint32_t cell) {
   if (Status status = top.finish(); !status) return fail(status.error());
 
   CoverageCell out;
-  auto aircraft = decode_aircraft(*model);
+  auto aircraft = decode_aircraft_model(*model);
   if (!aircraft) return fail(aircraft.error());
-  out.aircraft = std::move(*aircraft);
-  auto decoded = decode_experiment(*experiment);
+  out.aircraft = aircraft->aircraft;
+  auto decoded = decode_experiment(*experiment, *aircraft);
   if (!decoded) return fail(decoded.error());
   out.experiment = std::move(*decoded);
   if (Status status = apply_overrides(spec.cells.at(cell).tree, out.experiment); !status) return fail(status.error());

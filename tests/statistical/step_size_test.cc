@@ -66,11 +66,12 @@ TEST(StepSize, AQuarterOfTheStepMovesNoElementOfTheMeanResponseOutsideItsInterva
   const auto model = read_toml_resolved("campaigns/models/fat.toml");
   const auto file = read_toml_resolved("campaigns/experiments/chapter5.toml");
   ASSERT_TRUE(model && file);
-  const auto aircraft = decode_aircraft(*model);
-  const auto experiment = decode_experiment(*file);
-  ASSERT_TRUE(aircraft && experiment);
-  const MeanResponse coarse = fly_fifty(*aircraft, *experiment, 0.02);
-  const MeanResponse fine = fly_fifty(*aircraft, *experiment, 0.005);
+  const auto aircraft = decode_aircraft_model(*model);
+  ASSERT_TRUE(aircraft);
+  const auto experiment = decode_experiment(*file, *aircraft);
+  ASSERT_TRUE(experiment);
+  const MeanResponse coarse = fly_fifty(aircraft->aircraft, *experiment, 0.02);
+  const MeanResponse fine = fly_fifty(aircraft->aircraft, *experiment, 0.005);
   const double limit = std::sqrt(f_quantile_2_2q(0.95, kRepetitions - 1));
   double largest = 0.0;
   std::size_t outside = 0;
