@@ -111,7 +111,7 @@ Problem problem() {
   out.targets.push_back({"r/zeta product", std::norm(yaw_zero), 1e-4 * omega * omega});
   out.targets.push_back({"T_theta1", -published::kTheta1, 0.1});
   out.targets.push_back({"T_theta2", theta2, 0.05});
-  out.targets.push_back({"r/xi", roll_zero, 0.3});
+  out.targets.push_back({"r/xi", roll_zero, 0.05});
   // Conventions of the model file: body axes such that level flight has 2.5 degrees and no deflection, at 45 % throttle.
   out.targets.push_back({"trim alpha", 2.5 * kPi / 180.0, 1e-5});
   out.targets.push_back({"trim eta", 0.0, 1e-5});
