@@ -19,6 +19,7 @@ int run(int argc, char** argv) {
   app.set_help_all_flag("--help-all", "help of all commands");
   Exit exit = Exit::done;
   add_linearize_command(app, exit);
+  add_estimate_command(app, exit);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
