@@ -75,6 +75,7 @@ void fill(const ComputedRow& computed, pb::Row& out) {
 void fill(const Credit& credit, pb::Credit& out) {
   out.set_idle(credit.idle);
   out.set_queued(credit.queued);
+  out.set_newest_lease(credit.newest_lease);
 }
 
 struct Encoder {
@@ -115,7 +116,10 @@ struct Encoder {
     fill(m.credit, *heartbeat->mutable_credit());
     for (const std::uint64_t lease : m.leases) heartbeat->add_leases(lease);
   }
-  void operator()(const Bye& m) const { out.mutable_bye()->set_reason(m.reason); }
+  void operator()(const Bye& m) const {
+    out.mutable_bye()->set_reason(m.reason);
+    out.mutable_bye()->set_finished(m.finished);
+  }
   void operator()(const Refused& m) const {
     out.mutable_refused()->set_code(static_cast<pb::Refused::Code>(m.code));
     out.mutable_refused()->set_reason(m.reason);
@@ -193,7 +197,7 @@ Result<ComputedRow> read(const pb::Row& in) {
   return out;
 }
 
-Credit read(const pb::Credit& in) { return {in.idle(), in.queued()}; }
+Credit read(const pb::Credit& in) { return {in.idle(), in.queued(), in.newest_lease()}; }
 
 bool is_incarnation(std::string_view text) {
   return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
@@ -239,7 +243,7 @@ Result<Message> read(const pb::Heartbeat& in) {
 
 Result<Message> read(const pb::Bye& in) {
   if (in.reason().size() > kMaxText) return malformed("a reason of a wrong size");
-  return Bye{in.reason()};
+  return Bye{in.reason(), in.finished()};
 }
 
 Result<Message> read(const pb::Refused& in) {
@@ -261,7 +265,7 @@ std::string encode(const Message& message) {
   pb::Envelope envelope;
   std::visit(Encoder{envelope}, message);
   std::string frame;
-  FATMC_CHECK(envelope.SerializeToString(&frame), "a message is not valid UTF-8 or too large");
+  FATMC_CHECK(envelope.SerializeToString(&frame), "a message is too large");
   return frame;
 }
 

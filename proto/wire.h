@@ -43,9 +43,11 @@ struct Welcome {
   bool operator==(const Welcome&) const = default;
 };
 
+/// What a worker holds at this moment. A state and no increment, so that losing or repeating it is harmless.
 struct Credit {
-  std::uint32_t idle = 0;
-  std::uint64_t queued = 0;
+  std::uint32_t idle = 0;          ///< compute threads without work
+  std::uint64_t queued = 0;        ///< trials leased and not begun
+  std::uint64_t newest_lease = 0;  ///< the last LEASE that arrived
   bool operator==(const Credit&) const = default;
 };
 
@@ -87,6 +89,7 @@ struct Heartbeat {
 
 struct Bye {
   std::string reason;
+  bool finished = false;  ///< nothing is left to do; else the coordinator may come back
   bool operator==(const Bye&) const = default;
 };
 
