@@ -133,7 +133,7 @@ Worker::Worker(const WorkerOptions& options)
   socket_.set(zmq::sockopt::linger, static_cast<int>(kLinger.count()));
   socket_.set(zmq::sockopt::reconnect_ivl, 50);
   socket_.set(zmq::sockopt::reconnect_ivl_max, 1000);
-  socket_.set(zmq::sockopt::ipv6, true);
+  socket_.set(zmq::sockopt::ipv6, options.endpoint.find('[') != std::string::npos);
   socket_.connect(options.endpoint);
 }
 

@@ -64,7 +64,7 @@ CampaignServer::CampaignServer(const ServerOptions& options, CampaignState& stat
   socket.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(kMaxFrameBytes));
   socket.set(zmq::sockopt::linger, kLingerMs);
   socket.set(zmq::sockopt::router_handover, true);  // a worker that reconnects keeps its routing id
-  socket.set(zmq::sockopt::ipv6, true);
+  socket.set(zmq::sockopt::ipv6, options.endpoint.find('[') != std::string::npos);
 }
 
 CampaignServer::~CampaignServer() = default;

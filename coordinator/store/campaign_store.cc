@@ -117,6 +117,12 @@ struct CampaignStore::Parts {
   Parts(WriterLock held, const std::string& file)
       : lock(std::move(held)), path(file), db(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyMs) {}
 
+  // Leaves a single file that may be copied, unless a reader is in it at this moment.
+  ~Parts() {
+    for (auto* statement : {&insert_trial, &find_hash, &insert_metric, &insert_array, &insert_name}) statement->reset();
+    db.tryExec("PRAGMA journal_mode = DELETE");
+  }
+
   void prepare() {
     insert_trial.emplace(db, "INSERT OR IGNORE INTO trial VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     find_hash.emplace(db, "SELECT content_hash FROM trial WHERE id = ?");
