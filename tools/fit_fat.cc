@@ -12,8 +12,8 @@ namespace {
 int run() {
   const Problem setup = fat_problem();
   Fit fit = solve(setup);
-  std::fprintf(stderr, "%s after %d iterations, last step %.2g\n", fit.converged ? "converged" : "not converged",
-               fit.iterations, fit.step);
+  std::fprintf(stderr, "%s after %d iterations, last step %.2g, violation %.2g\n", fit.converged ? "converged" : "not converged",
+               fit.iterations, fit.step, fit.violation);
   for (std::size_t i = 0; i < setup.targets.size(); ++i) {
     std::fprintf(stderr, "%-20s wanted %12.8g reached %12.8g\n", setup.targets[i].name.c_str(),
                  setup.targets[i].value, fit.reached[static_cast<Eigen::Index>(i)]);

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/flight/linear_model.h"
+#include "tests/unit/flight/fat.h"
 #include "tools/fat_problem.h"
 #include "tools/fit_problem.h"
 #include "tools/write_fat.h"
@@ -22,7 +23,7 @@ TEST(Fit, RunAgainGivesTheShippedModelFile) {
 }
 
 TEST(Fit, DerivativesHaveThePhysicalSigns) {
-  const Aircraft a = solve(fat_problem()).aircraft;
+  const Aircraft& a = fat();
   EXPECT_GT(a.lift.alpha, 0.0);
   EXPECT_LT(a.pitch.alpha, 0.0);  // statically stable
   EXPECT_LT(a.pitch.q, 0.0);
@@ -48,7 +49,20 @@ TEST(Fit, ALinearProblemIsSolvedExactly) {
   problem.model = [](const Aircraft& a) { return Eigen::VectorXd(Eigen::VectorXd::Constant(1, a.mass_kg)); };
   const Fit fit = solve(problem);
   EXPECT_TRUE(fit.converged);
-  EXPECT_NEAR(fit.aircraft.mass_kg, (13.0 + 10.0 / 4.0) / (1.0 + 1.0 / 4.0), 1e-9);
+  EXPECT_NEAR(fit.aircraft.mass_kg, (13.0 + 10.0 / 4.0) / (1.0 + 1.0 / 4.0), 1e-8);
+}
+
+TEST(Fit, AConstraintHoldsExactlyAndThePriorsChooseTheRest) {
+  // mass * span = 2 nearest to (1, 1) in units of spreads: mass = span = sqrt(2) by symmetry.
+  Problem problem;
+  problem.parameters.push_back({"mass", [](Aircraft& a) -> double& { return a.mass_kg; }, 1.0, 1.0});
+  problem.parameters.push_back({"span", [](Aircraft& a) -> double& { return a.span_m; }, 1.0, 1.0});
+  problem.targets.push_back({"product", 2.0, 1e-3, true});
+  problem.model = [](const Aircraft& a) { return Eigen::VectorXd(Eigen::VectorXd::Constant(1, a.mass_kg * a.span_m)); };
+  const Fit fit = solve(problem);
+  EXPECT_TRUE(fit.converged);
+  EXPECT_NEAR(fit.aircraft.mass_kg, std::sqrt(2.0), 1e-8);
+  EXPECT_NEAR(fit.aircraft.span_m, std::sqrt(2.0), 1e-8);
 }
 
 }  // namespace
