@@ -147,8 +147,8 @@ std::string shell_line(const std::vector<std::string>& words) {
 Exit run_session(const CampaignSpec& spec, const SessionOptions& options) {
   spdlog::set_default_logger(spdlog::stderr_logger_mt("coordinator"));
   spdlog::set_level(options.verbose ? spdlog::level::debug : spdlog::level::off);
-  block_signals();
   {
+    const BlockedSignals blocked;
     Result<CampaignStore> store = CampaignStore::open(options.database, spec, build_hash());
     if (!store) return report(store.error());
     write_last(options.database);
