@@ -39,13 +39,12 @@ void print_outcomes(const CampaignReader& reader, const std::string& database) {
     counts[count.outcome] += count.trials;
     stored += count.trials;
   }
-  std::string text;
+  std::string text = std::to_string(counts["ok"]) + " ok";
   for (const auto& [outcome, trials] : counts) {
-    text += (text.empty() ? "" : ", ") + std::to_string(trials) + " " + outcome;
+    if (outcome != "ok") text += ", " + std::to_string(trials) + " " + outcome;
   }
   std::printf("%llu of %llu trials: %s\ndatabase: %s\n", static_cast<unsigned long long>(stored),
-              static_cast<unsigned long long>(reader.spec().trial_count()), text.empty() ? "none" : text.c_str(),
-              database.c_str());
+              static_cast<unsigned long long>(reader.spec().trial_count()), text.c_str(), database.c_str());
   std::fflush(stdout);
 }
 
@@ -147,8 +146,8 @@ std::string shell_line(const std::vector<std::string>& words) {
 Exit run_session(const CampaignSpec& spec, const SessionOptions& options) {
   spdlog::set_default_logger(spdlog::stderr_logger_mt("coordinator"));
   spdlog::set_level(options.verbose ? spdlog::level::debug : spdlog::level::off);
-  block_signals();
   {
+    const BlockedSignals blocked;
     Result<CampaignStore> store = CampaignStore::open(options.database, spec, build_hash());
     if (!store) return report(store.error());
     write_last(options.database);

@@ -36,10 +36,12 @@ MonotonicTime now() { return Clock::now().time_since_epoch(); }
 
 }  // namespace
 
-void block_signals() {
+BlockedSignals::BlockedSignals() {
   const sigset_t set = served_signals();
-  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  pthread_sigmask(SIG_BLOCK, &set, &before_);
 }
+
+BlockedSignals::~BlockedSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
 std::string host_name() {
   char name[256] = {};
@@ -129,14 +131,14 @@ void CampaignServer::receive() {
       }
       continue;
     }
-    const Result<Message> message = decode(frame.to_string_view());
+    Result<Message> message = decode(frame.to_string_view());
     if (!message) {
       ++malformed_;
       spdlog::warn("{}", message.error().text());
       continue;
     }
     spdlog::debug("from {}: {}", id.to_string().substr(0, 8), message_name(*message));
-    state_.on_message(id.to_string(), *message, now(), *this);
+    state_.on_message(id.to_string(), std::move(*message), now(), *this);
     if (state_.all_received() || parts_->batch_rows >= options_.batch_rows) commit();
   }
 }

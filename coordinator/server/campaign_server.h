@@ -5,6 +5,8 @@
 // acknowledged. Messages that are malformed or too large are counted and dropped.
 #pragma once
 
+#include <signal.h>
+
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -36,7 +38,7 @@ enum class ServerEnd { finished, interrupted, failed };
 
 class CampaignServer : private Outbox {
  public:
-  /// Binds; SIGINT, SIGTERM and SIGCHLD must be blocked (block_signals()) before.
+  /// Binds; SIGINT, SIGTERM and SIGCHLD must be blocked (BlockedSignals) before.
   static Result<std::unique_ptr<CampaignServer>> bind(const ServerOptions& options, CampaignState& state,
                                                       CampaignStore& store);
   ~CampaignServer() override;
@@ -68,8 +70,18 @@ class CampaignServer : private Outbox {
   std::uint64_t malformed_ = 0;
 };
 
-/// Blocks the signals that the server reads from a descriptor; to be called before any thread exists.
-void block_signals();
+/// Blocks SIGINT, SIGTERM and SIGCHLD, which the server reads from a descriptor, as long as it lives. To be made
+/// before any thread exists.
+class BlockedSignals {
+ public:
+  BlockedSignals();
+  ~BlockedSignals();
+  BlockedSignals(const BlockedSignals&) = delete;
+  BlockedSignals& operator=(const BlockedSignals&) = delete;
+
+ private:
+  sigset_t before_;
+};
 
 std::string host_name();
 

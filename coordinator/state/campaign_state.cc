@@ -25,7 +25,7 @@ CampaignState::CampaignState(std::vector<PlanCell> plan, Welcome welcome, std::s
   }
 }
 
-void CampaignState::on_message(const WorkerId& worker, const Message& message, MonotonicTime now, Outbox& out) {
+void CampaignState::on_message(const WorkerId& worker, Message message, MonotonicTime now, Outbox& out) {
   if (const auto* hello = std::get_if<Hello>(&message)) return on_hello(worker, *hello, now, out);
   const auto known = workers_.find(worker);
   if (known == workers_.end()) {
@@ -38,8 +38,8 @@ void CampaignState::on_message(const WorkerId& worker, const Message& message, M
   known->second.last_heard = now;
   if (const auto* credit = std::get_if<Credit>(&message)) {
     on_credit(worker, *credit, now, out);
-  } else if (const auto* results = std::get_if<Results>(&message)) {
-    on_results(worker, *results, now, out);
+  } else if (auto* results = std::get_if<Results>(&message)) {
+    on_results(worker, std::move(*results), now, out);
   } else if (const auto* heartbeat = std::get_if<Heartbeat>(&message)) {
     on_heartbeat(worker, *heartbeat, now, out);
   } else if (const auto* refused = std::get_if<Refused>(&message)) {
@@ -132,7 +132,7 @@ void CampaignState::serve_waiting(MonotonicTime now, Outbox& out) {
   }
 }
 
-void CampaignState::on_results(const WorkerId& worker, const Results& results, MonotonicTime now, Outbox& out) {
+void CampaignState::on_results(const WorkerId& worker, Results results, MonotonicTime now, Outbox& out) {
   StoreRequest request;
   request.worker = worker;
   request.sequence = results.sequence;
@@ -144,7 +144,8 @@ void CampaignState::on_results(const WorkerId& worker, const Results& results, M
     out.send(worker, Ack{results.sequence});  // of a campaign that this coordinator knows nothing of: let it go
     return;
   }
-  for (const ComputedRow& row : results.rows) {
+  request.rows.reserve(results.rows.size());
+  for (ComputedRow& row : results.rows) {
     const TrialKey key = row.row.key;
     if (key.cell >= cells_.size() || key.repetition >= cells_[key.cell].repetitions) {
       ++counters_.out_of_plan;
@@ -154,7 +155,7 @@ void CampaignState::on_results(const WorkerId& worker, const Results& results, M
     const auto& retries = cells_[key.cell].retries;
     const auto retry = retries.find(key.repetition);
     request.attempts.push_back(retry == retries.end() ? 1U : 1U + retry->second);
-    request.rows.push_back(row);
+    request.rows.push_back(std::move(row));
   }
   if (request.rows.empty()) {
     out.send(worker, Ack{results.sequence});

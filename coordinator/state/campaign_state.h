@@ -89,7 +89,7 @@ class CampaignState {
  public:
   CampaignState(std::vector<PlanCell> plan, Welcome welcome, std::string build, StateOptions options = {});
 
-  void on_message(const WorkerId& worker, const Message& message, MonotonicTime now, Outbox& out);
+  void on_message(const WorkerId& worker, Message message, MonotonicTime now, Outbox& out);
   void on_stored(const StoreReport& report, MonotonicTime now, Outbox& out);
   /// The worker's process has ended: its leases are free at once.
   void on_gone(const WorkerId& worker, MonotonicTime now, Outbox& out);
@@ -132,7 +132,7 @@ class CampaignState {
 
   void on_hello(const WorkerId& worker, const Hello& hello, MonotonicTime now, Outbox& out);
   void on_credit(const WorkerId& worker, const Credit& credit, MonotonicTime now, Outbox& out);
-  void on_results(const WorkerId& worker, const Results& results, MonotonicTime now, Outbox& out);
+  void on_results(const WorkerId& worker, Results results, MonotonicTime now, Outbox& out);
   void on_heartbeat(const WorkerId& worker, const Heartbeat& heartbeat, MonotonicTime now, Outbox& out);
   void take_row(const WorkerId& worker, const ComputedRow& row, MonotonicTime now);
   void measure(CellState& cell, std::uint64_t duration_ns);

@@ -115,7 +115,7 @@ struct CampaignStore::Parts {
   std::map<std::string, std::int64_t, std::less<>> names;
 
   Parts(WriterLock held, const std::string& file)
-      : lock(std::move(held)), path(file), db(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyMs) {}
+      : lock(std::move(held)), path(file), db(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE | SQLite::OPEN_NOMUTEX, kBusyMs) {}
 
   // Leaves a single file that may be copied, unless a reader is in it at this moment.
   ~Parts() {

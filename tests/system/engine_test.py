@@ -123,7 +123,7 @@ class Engine(unittest.TestCase):
         reference = self.reference_digest()
         result = self.call("run", "spec.toml", "--db", "two.db", "--workers", "2")
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("180 of 180 trials: 12 diverged, 168 ok", result.stdout)
+        self.assertIn("180 of 180 trials: 168 ok, 12 diverged", result.stdout)
         self.assertIn("mean of a standard normal", result.stdout)
         self.assertEqual(self.digest("two.db"), reference)
 
