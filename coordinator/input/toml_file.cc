@@ -51,11 +51,16 @@ Result<Tree> convert(const toml::node& node, const std::string& file) {
   return tree;
 }
 
+// Keys whose string is the name of a file to put in its place.
+bool names_file(std::string_view key) {
+  return key == "model" || key == "experiment" || key == "published";
+}
+
 Status resolve(Tree& tree, int depth);
 
 Status resolve_entry(const std::string& key, Tree& entry, int depth) {
   const auto* name = std::get_if<std::string>(&entry.value);
-  if ((key != "model" && key != "experiment") || name == nullptr) return resolve(entry, depth);
+  if (!names_file(key) || name == nullptr) return resolve(entry, depth);
   const auto path = std::filesystem::path(entry.file).parent_path() / *name;
   if (depth > 8) return fail(Error{entry.file, entry.line, key, "files name each other in a circle"});
   if (!std::filesystem::exists(path)) {

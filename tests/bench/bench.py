@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""Runs the benchmarks and prints a line a figure; --json prints JSON lines.
+
+`reference` is the figure of a peer or of the thesis, `ratio` says how many times better ours is. Figures of Google
+Benchmark are medians of repetitions; whole commands are timed several times and the median is given.
+"""
+import argparse
+import json
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BIN = ROOT / "build" / "release" / "bin"
+
+# name: (program, benchmark, unit, reference, higher is better, where the reference is from)
+GOOGLE = {
+    "sim_steps_per_s": ("bench_flight", "sim_steps_per_s", "1/s", 0.125e6, True,
+                        "JSBSim on such a core: 0.10 to 0.15 million simpler frames a second"),
+    "lpm_73_lines_ms": ("bench_lpm", "lpm_73_lines_ms", "ms", 40.0, False, "thesis, section 5.7: 0.04 s"),
+    "lpm_line_us_prepared": ("bench_lpm", "lpm_line_us_prepared", "us", None, False, ""),
+    "lpm_line_us_cold": ("bench_lpm", "lpm_line_us_cold", "us", None, False, ""),
+    "acked_per_s": ("bench_engine", "acked_per_s", "1/s", None, True, ""),
+    "coordinator_us_per_trial": ("bench_engine", "coordinator_us_per_trial", "us", None, False, ""),
+}
+
+
+def google_benchmark(program):
+    """Median of the counter or time that each benchmark reports under its own name."""
+    path = BIN / program
+    if not path.exists():
+        sys.exit(f"bench: {path} is missing, run scripts/build")
+    out = subprocess.run([str(path), "--benchmark_format=json", "--benchmark_repetitions=5",
+                          "--benchmark_report_aggregates_only=true"], check=True, capture_output=True, text=True)
+    figures = {}
+    for entry in json.loads(out.stdout)["benchmarks"]:
+        if entry.get("aggregate_name") == "median":
+            name = entry["run_name"].split("/")[0]
+            figures[name] = entry[name]
+    return figures
+
+
+def coverage_campaign_seconds(runs=5):
+    """Wall time of the default campaign, 50 trials, from start to table."""
+    times = []
+    for _ in range(runs):
+        with tempfile.TemporaryDirectory() as folder:
+            start = time.monotonic()
+            subprocess.run([str(BIN / "fatmc"), "run", str(ROOT / "campaigns/coverage/spec.toml"),
+                            "--db", f"{folder}/coverage.db"], check=True, capture_output=True)
+            times.append(time.monotonic() - start)
+    return statistics.median(times)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", action="store_true", help="print JSON lines")
+    arguments = parser.parse_args()
+
+    measured = {}
+
+    def emit(name, unit, reference, higher, source):
+        value = measured[name]
+        ratio = None if reference is None else (value / reference if higher else reference / value)
+        if arguments.json:
+            print(json.dumps({"name": name, "value": value, "unit": unit, "reference": reference, "ratio": ratio}),
+                  flush=True)
+        else:
+            text = f"{name:26s} {value:14.6g} {unit:4s}"
+            if reference is not None:
+                text += f"   reference {reference:<10.6g} ratio {ratio:8.2f}   {source}"
+            print(text, flush=True)
+
+    for name, (program, benchmark, unit, reference, higher, source) in GOOGLE.items():
+        if benchmark not in measured:
+            measured.update(google_benchmark(program))
+        emit(name, unit, reference, higher, source)
+    measured["coverage_campaign_s"] = coverage_campaign_seconds()
+    emit("coverage_campaign_s", "s", 3.0, False, "bar: 50 trials on 2 cores, start to table")
+
+
+if __name__ == "__main__":
+    main()
