@@ -1,309 +1,249 @@
 #include "core/robust/structured_singular_value.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
+#include <limits>
 
 #include "core/base/check.h"
-#include "core/robust/largest_singular_value.h"
+#include "core/robust/phase_problem.h"
+#include "core/robust/scaling_descent.h"
+#include "core/robust/scaling_problem.h"
 
 namespace fatmc {
-
-LoopMatrix loop_matrix(const Eigen::Ref<const Eigen::MatrixXcd>& plant,
-                       const Eigen::Ref<const Eigen::MatrixXcd>& controller) {
-  const Eigen::Index inputs = controller.rows();
-  const Eigen::MatrixXcd difference = Eigen::MatrixXcd::Identity(inputs, inputs) + controller * plant;
-  const Eigen::FullPivLU<Eigen::MatrixXcd> lu(difference);
-  LoopMatrix out;
-  out.invertible = difference.allFinite() && lu.isInvertible();
-  out.x = out.invertible ? Eigen::MatrixXcd(lu.solve(controller)) : Eigen::MatrixXcd::Zero(inputs, controller.cols());
-  return out;
-}
-
 namespace {
 
-// The problem for n_in × n_out known at compile time (3 × 3) or not (Eigen::Dynamic). Variables are θ = (log s, log t)
-// without the first of each, which fix the two scales that change nothing.
+using Complex = std::complex<double>;
+
+// Keeps only what lies on a loop of the graph (input j → output i where w_ij > 0, output i → input j where x_ji ≠ 0).
+// det(I + X Δ) depends on nothing else, and without it the best scalings would lie at infinity.
+template <typename Loop, typename Radii>
+void keep_loops(Loop& x, Radii& w) {
+  const Eigen::Index n_in = x.rows(), n_out = x.cols(), n = n_in + n_out;
+  if (w.minCoeff() > 0.0 && x.cwiseAbs2().minCoeff() > 0.0) return;
+  Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> reaches(n, n);  // inputs, then outputs
+  reaches.setConstant(false);
+  for (Eigen::Index j = 0; j < n_in; ++j) {
+    for (Eigen::Index i = 0; i < n_out; ++i) {
+      reaches(j, n_in + i) = w(i, j) > 0.0;
+      reaches(n_in + i, j) = x(j, i) != Complex(0.0);
+    }
+  }
+  for (Eigen::Index k = 0; k < n; ++k) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j) reaches(i, j) = reaches(i, j) || (reaches(i, k) && reaches(k, j));
+    }
+  }
+  for (Eigen::Index j = 0; j < n_in; ++j) {
+    for (Eigen::Index i = 0; i < n_out; ++i) {
+      const bool loop = reaches(j, n_in + i) && reaches(n_in + i, j);
+      if (!loop) w(i, j) = 0.0;
+      if (!loop) x(j, i) = 0.0;
+    }
+  }
+}
+
 template <int In, int Out>
-class SsvProblem {
+class Solver {
  public:
-  static constexpr int kVariables = In == Eigen::Dynamic ? Eigen::Dynamic : In + Out - 2;
-  using Loop = Eigen::Matrix<std::complex<double>, In, Out>;
-  using Radii = Eigen::Matrix<double, Out, In>;
-  using InVector = Eigen::Matrix<double, In, 1>;
-  using OutVector = Eigen::Matrix<double, Out, 1>;
-  using Variables = Eigen::Matrix<double, kVariables, 1>;
-  using Hessian = Eigen::Matrix<double, kVariables, kVariables>;
-  using InGram = Eigen::Matrix<std::complex<double>, In, In>;
-  using InPhases = Eigen::Matrix<std::complex<double>, In, 1>;
-  using OutPhases = Eigen::Matrix<std::complex<double>, Out, 1>;
+  using Scalings = ScalingProblem<In, Out>;
+  using PhaseSearch = PhaseProblem<In, Out>;
 
-  struct Point {
-    Variables theta;
-    double value = 0.0;  // log of σ_max², or of its smooth majorant
-    double sigma2 = 0.0;
-    double gap = 0.0;
-    Variables gradient;
-    OutPhases v;  // right singular vector; n_out
-    InPhases u;   // left singular vector; n_in
-  };
+  Solver(const typename Scalings::Loop& x, const typename Scalings::Radii& w, const SsvOptions& options)
+      : x_(x), w_(w), scalings_(x_, w_), phases_(x_, w_), options_(options) {}
 
-  SsvProblem(const Loop& x, const Radii& radii) : x_(x), w_(radii) {}
-
-  // log σ_max² and its gradient; with power > 0 the majorant log (Σ λ^power)^(1/power), smooth where λ1 is multiple.
-  Point evaluate(const Variables& theta, double power = 0.0) {
-    ++evaluations_;
-    Point point;
-    point.theta = theta;
-    const Eigen::Index n_in = x_.rows(), n_out = x_.cols();
-    OutVector s = OutVector::Ones(n_out);
-    InVector t = InVector::Ones(n_in);
-    s.tail(n_out - 1) = theta.head(n_out - 1).array().exp();
-    t.tail(n_in - 1) = theta.tail(n_in - 1).array().exp();
-    const InVector column = w_.transpose() * s;       // Σ_i w_ij s_i
-    const OutVector row = w_ * t.cwiseInverse();      // Σ_j w_ij / t_j
-    const InVector a = (t.array() * column.array()).sqrt();
-    const OutVector b = (row.array() / s.array()).sqrt();
-    const Loop n = a.asDiagonal() * x_ * b.asDiagonal();
-    const InGram gram = n * n.adjoint();
-
-    InVector left;    // Σ_k ω_k |u_k|²
-    OutVector right;  // Σ_k ω_k |v_k|²
-    if (power > 0.0) {
-      const Eigen::SelfAdjointEigenSolver<InGram> solver(gram);
-      const double top = std::max(solver.eigenvalues()(n_in - 1), 1e-300);
-      InVector weight = (solver.eigenvalues().array().max(0.0) / top).pow(power);
-      const double sum = weight.sum();
-      point.sigma2 = top;
-      point.value = std::log(top) + std::log(sum) / power;
-      weight /= sum;
-      left = solver.eigenvectors().cwiseAbs2() * weight;
-      right.setZero(n_out);
-      for (Eigen::Index k = 0; k < n_in; ++k) {
-        const double lambda = solver.eigenvalues()(k);
-        if (lambda > 1e-300) right += (weight(k) / lambda) * (n.adjoint() * solver.eigenvectors().col(k)).cwiseAbs2();
-      }
-      point.u = solver.eigenvectors().col(n_in - 1);
-      point.gap = n_in > 1 ? (top - solver.eigenvalues()(n_in - 2)) / top : 1.0;
-    } else {
-      const LargestEigenpair<In> largest = largest_eigenpair(gram);
-      point.sigma2 = std::max(largest.value, 1e-300);
-      point.value = std::log(point.sigma2);
-      point.u = largest.vector;
-      point.gap = largest.gap;
-      left = point.u.cwiseAbs2();
-      right = (n.adjoint() * point.u).cwiseAbs2() / point.sigma2;
-    }
-    point.v = n.adjoint() * point.u / std::sqrt(point.sigma2);
-
-    // d log σ² = Σ_j left_j d log a_j² + Σ_i right_i d log b_i².
-    point.gradient.resize(n_in + n_out - 2);
-    for (Eigen::Index i = 1; i < n_out; ++i) {
-      double sum = 0.0;
-      for (Eigen::Index j = 0; j < n_in; ++j) {
-        if (column(j) > 0.0) sum += left(j) * w_(i, j) * s(i) / column(j);
-      }
-      point.gradient(i - 1) = sum - (row(i) > 0.0 ? right(i) : 0.0);
-    }
-    for (Eigen::Index j = 1; j < n_in; ++j) {
-      double sum = 0.0;
-      for (Eigen::Index i = 0; i < n_out; ++i) {
-        if (row(i) > 0.0) sum += right(i) * w_(i, j) / (t(j) * row(i));
-      }
-      point.gradient(n_out - 1 + j - 1) = (column(j) > 0.0 ? left(j) : 0.0) - sum;
-    }
-    return point;
+  /// `theta` is the start and becomes the best scaling; `worst` becomes the phases behind the lower bound.
+  SsvBounds solve(typename Scalings::Variables& theta, typename PhaseSearch::Phases& worst) {
+    SsvBounds out;
+    descend_exactly(theta, out);
+    if (!met()) follow_majorants(theta, out);
+    out.upper = std::sqrt(best_);
+    out.lower = std::min(lower_, out.upper);  // ρ is known to round-off only
+    out.status = met() ? SsvStatus::met : out.excess <= options_.agreement ? SsvStatus::gap : SsvStatus::not_converged;
+    if (out.status == SsvStatus::met) out.excess = std::min(out.excess, (out.upper - out.lower) / out.upper);
+    worst = worst_;
+    return out;
   }
-
-  // Quasi-Newton descent (BFGS, backtracking); θ is bounded because a zero pattern of w may send it to infinity.
-  Point descend(Point point, double power, const SsvOptions& options) {
-    const Eigen::Index variables = point.theta.size();
-    Hessian inverse = Hessian::Identity(variables, variables) * 2.0;
-    bool scaled = false;
-    while (evaluations_ < options.max_iterations) {
-      Variables direction = -(inverse * point.gradient);
-      double slope = direction.dot(point.gradient);
-      if (!(slope < 0.0)) {
-        inverse = Hessian::Identity(variables, variables);
-        direction = -point.gradient;
-        slope = direction.dot(point.gradient);
-        if (!(slope < -1e-30)) break;
-      }
-      // The quadratic model promises a decrease of -slope/2.
-      if (-slope < options.tolerance) break;
-      const double longest = direction.cwiseAbs().maxCoeff();
-      if (longest > 4.0) {
-        direction *= 4.0 / longest;
-        slope *= 4.0 / longest;
-      }
-      double step = 1.0;
-      Point next = evaluate(clamp(point.theta + direction), power);
-      while (next.value > point.value + 1e-4 * step * slope && step > 1e-6 && evaluations_ < options.max_iterations) {
-        // Minimum of the parabola through both values and the slope, kept within a sensible part of the step.
-        const double curvature = next.value - point.value - step * slope;
-        step *= std::clamp(-0.5 * step * slope / curvature, 0.1, 0.5);
-        next = evaluate(clamp(point.theta + step * direction), power);
-      }
-      if (!(next.value < point.value)) break;
-      const Variables dx = next.theta - point.theta;
-      const Variables dg = next.gradient - point.gradient;
-      const double product = dx.dot(dg);
-      if (product > 1e-14 * dx.norm() * dg.norm()) {
-        if (!scaled) {
-          inverse *= product / (2.0 * dg.squaredNorm());
-          scaled = true;
-        }
-        const Variables hg = inverse * dg;
-        inverse += ((product + dg.dot(hg)) / (product * product)) * dx * dx.transpose() -
-                   (hg * dx.transpose() + dx * hg.transpose()) / product;
-      }
-      point = next;
-    }
-    return point;
-  }
-
-  // ρ(X diag(p) W diag(q)) climbed from the phases of a pair of singular vectors: with the eigenvector x of the
-  // current phases, y = W |x| aligned; a power method on x ← X (phases) W |x|.
-  double lower_bound(const OutPhases& v, const InPhases& u, int iterations) const {
-    const Eigen::Index n_in = x_.rows(), n_out = x_.cols();
-    OutPhases p(n_out);
-    InPhases q(n_in);
-    for (Eigen::Index i = 0; i < n_out; ++i) p(i) = phase(v(i));
-    for (Eigen::Index j = 0; j < n_in; ++j) q(j) = std::conj(phase(u(j)));
-    double best = spectral_radius(p, q);
-    for (int k = 0; k < iterations; ++k) {
-      // Ascent: right and left eigenvectors of A = X diag(p) W diag(q) say how each phase should turn.
-      if (!turn_phases(p, q)) break;
-      const double next = spectral_radius(p, q);
-      if (next <= best * (1.0 + 1e-12)) {
-        best = std::max(best, next);
-        break;
-      }
-      best = next;
-    }
-    return best;
-  }
-
-  [[nodiscard]] int evaluations() const { return evaluations_; }
 
  private:
-  static std::complex<double> phase(std::complex<double> z) {
-    const double magnitude = std::abs(z);
-    return magnitude > 1e-150 ? z / magnitude : std::complex<double>(1.0);
-  }
-  static Variables clamp(const Variables& theta) { return theta.cwiseMax(-60.0).cwiseMin(60.0); }
-
-  InGram product(const OutPhases& p, const InPhases& q) const {
-    return x_ * p.asDiagonal() * w_.template cast<std::complex<double>>() * q.asDiagonal();
-  }
-  double spectral_radius(const OutPhases& p, const InPhases& q) const {
-    const Eigen::ComplexEigenSolver<InGram> solver(product(p, q), false);
-    return solver.eigenvalues().cwiseAbs().maxCoeff();
-  }
-  // One alignment step. At a maximum of ρ over the phases, with A x = λ x and zᴴ A = λ zᴴ (zᴴ x real positive after a
-  // common turn), the contributions of every output, (zᴴ X)_i p_i (W diag(q) x)_i, and of every input have the phase of
-  // λ zᴴ x; the step turns p and q so that they do.
-  bool turn_phases(OutPhases& p, InPhases& q) const {
-    const InGram a = product(p, q);
-    const Eigen::ComplexEigenSolver<InGram> solver(a);
-    Eigen::Index largest = 0;
-    solver.eigenvalues().cwiseAbs().maxCoeff(&largest);
-    const InPhases x = solver.eigenvectors().col(largest);
-    const Eigen::FullPivLU<InGram> lu(solver.eigenvectors());
-    if (!lu.isInvertible()) return false;
-    const InGram inverse = lu.inverse();
-    const Eigen::Matrix<std::complex<double>, 1, In> z = inverse.row(largest);  // z x = 1
-    const std::complex<double> target = phase(solver.eigenvalues()(largest));
-    const Eigen::Matrix<std::complex<double>, 1, Out> zx = z * x_;
-    const InPhases qx = q.asDiagonal() * x;
-    const OutPhases wqx = w_.template cast<std::complex<double>>() * qx;
-    for (Eigen::Index i = 0; i < p.size(); ++i) {
-      const std::complex<double> part = zx(i) * wqx(i);
-      if (std::abs(part) > 1e-150) p(i) = target / phase(part);
-    }
-    const Eigen::Matrix<std::complex<double>, 1, In> zxpw =
-        zx * p.asDiagonal() * w_.template cast<std::complex<double>>();
-    for (Eigen::Index j = 0; j < q.size(); ++j) {
-      const std::complex<double> part = zxpw(j) * x(j);
-      if (std::abs(part) > 1e-150) q(j) = target / phase(part);
-    }
-    return true;
+  [[nodiscard]] bool met() const {
+    return std::sqrt(best_) - lower_ <= options_.agreement * std::sqrt(best_);
   }
 
-  const Loop& x_;
-  const Radii& w_;
-  int evaluations_ = 0;
+  // The phases of Σ_k ω_k^½ e^{iψ_k} (u_k, v_k) as a start; σ_max is close to the eigenvalue.
+  void look(const typename Scalings::Point& point, int climb_steps, double turn, SsvBounds& out) {
+    const Eigen::Index n_in = x_.rows(), n_out = x_.cols();
+    typename PhaseSearch::Phases phases(n_in + n_out);
+    std::array<Complex, 2> mix{1.0, 0.0};
+    if (climb_steps > 0 && n_in > 1) {
+      mix[0] = std::sqrt(point.weights(0));
+      mix[1] = std::polar(std::sqrt(point.weights(1)), turn);
+    }
+    const Eigen::Index terms = n_in > 1 ? 2 : 1;
+    for (Eigen::Index i = 0; i < n_out; ++i) {
+      Complex v = 0.0;
+      for (Eigen::Index k = 0; k < terms; ++k) v += mix[static_cast<std::size_t>(k)] * point.right(i, k);
+      phases(i) = std::arg(v);
+    }
+    for (Eigen::Index j = 0; j < n_in; ++j) {
+      Complex u = 0.0;
+      for (Eigen::Index k = 0; k < terms; ++k) u += mix[static_cast<std::size_t>(k)] * point.spectrum.vectors(j, k);
+      phases(n_out + j) = -std::arg(u);
+    }
+    auto found = phases_.evaluate(phases, std::sqrt(point.sigma2), climb_steps > 0);
+    if (climb_steps > 0) {
+      ++out.climbs;
+      found = phases_.climb(std::move(found), 1e-13, climb_steps);
+    }
+    if (!std::isfinite(found.rho)) return;
+    if (found.rho > lower_ * (1.0 + 1e-9)) lower_found_ = 0;
+    if (found.rho > lower_ * (1.0 - 1e-9)) ++lower_found_;
+    if (found.rho > lower_) {
+      lower_ = found.rho;
+      worst_ = found.phases;
+    }
+  }
+
+  // Newton on log σ_max² itself, and the lower bound from its singular vectors.
+  void descend_exactly(typename Scalings::Variables& theta, SsvBounds& out) {
+    typename Scalings::Point start = scalings_.evaluate(theta, Scalings::kExact);
+    Descent<In, Out> descent = descend(scalings_, std::move(start), 1e-9, kExactEvaluations);
+    out.iterations += descent.evaluations + 1;
+    if (descent.best.sigma2 <= best_) {
+      best_ = descent.best.sigma2;
+      theta = descent.best.theta;
+      // Quadratic convergence: the last step left the square of what it promised.
+      out.excess = descent.converged && descent.best.gap > 1e-6 ? 0.5 * descent.decrement * descent.decrement : 1.0;
+    }
+    look(descent.best, 0, 0.0, out);
+  }
+
+  // σ_max multiple at the optimum, or met on the way there: minimisers of F_p for growing p. In μ = 1/p they lie on a
+  // smooth curve, so that each stage starts from the line through the last two. min F_p − log(n) μ is below the minimum
+  // of log σ_max²: the last μ bounds the distance to it.
+  void follow_majorants(typename Scalings::Variables& theta, SsvBounds& out) {
+    const double inputs = static_cast<double>(x_.rows());
+    typename Scalings::Variables last = theta, before = theta, start = theta;
+    double mu_last = 0.0, mu_before = 0.0, factor = 8.0, mu = 1.0 / 16.0;
+    typename Scalings::Point point;
+    bool any = false;
+    while (mu > 1e-11 && out.iterations < options_.max_iterations) {
+      Descent<In, Out> stage = descend(scalings_, scalings_.evaluate(start, 1.0 / mu), 1e-4 * mu, kStageEvaluations);
+      out.iterations += stage.evaluations + 1;
+      if (stage.best.sigma2 < best_) {
+        best_ = stage.best.sigma2;
+        theta = stage.best.theta;
+      }
+      if (!stage.converged) {  // shorter step along the curve
+        factor = std::sqrt(factor);
+        if (factor < 1.1) break;
+      } else {
+        point = std::move(stage.best);
+        any = true;
+        out.excess = std::min(out.excess, 0.5 * std::log(inputs) * mu);
+        if (point.gap > 40.0 * mu) {  // simple after all: the other singular values weigh nothing
+          theta = point.theta;
+          descend_exactly(theta, out);
+          if (met()) return;
+        }
+        before = last;
+        mu_before = mu_last;
+        last = point.theta;
+        mu_last = mu;
+        if (stage.evaluations <= 4) factor = std::min(factor * std::sqrt(factor), 1e3);
+      }
+      mu = (any ? mu_last : 0.25) / factor;
+      start = last;
+      if (mu_before > 0.0) start += ((mu - mu_last) / (mu_last - mu_before)) * (last - before);
+    }
+    if (!any) return;
+    climb_from_active_vectors(point, out);
+  }
+
+  // Starts at combinations of the two leading pairs of singular vectors, until the best has been found three times.
+  void climb_from_active_vectors(const typename Scalings::Point& point, SsvBounds& out) {
+    double square = 0.0;
+    for (Eigen::Index k = 0; k < point.weights.size(); ++k) square += point.weights(k) * point.weights(k);
+    out.multiplicity = 1.0 / square;
+    lower_found_ = 0;
+    for (int k = 0; k < options_.max_climbs && !met() && lower_found_ < 3; ++k) {
+      look(point, 60, kGoldenAngle * k, out);
+    }
+  }
+
+  static constexpr int kExactEvaluations = 14;
+  static constexpr int kStageEvaluations = 12;
+  static constexpr double kGoldenAngle = 2.399963229728653;  // spreads any number of starts evenly over the circle
+
+  const typename Scalings::Loop& x_;
+  const typename Scalings::Radii& w_;
+  Scalings scalings_;
+  PhaseSearch phases_;
+  const SsvOptions& options_;
+  double best_ = std::numeric_limits<double>::infinity();
+  double lower_ = 0.0;
+  int lower_found_ = 0;
+  typename PhaseSearch::Phases worst_;
 };
 
 template <int In, int Out>
 SsvBounds solve(const Eigen::Ref<const Eigen::MatrixXcd>& x_in, const Eigen::Ref<const Eigen::MatrixXd>& radii_in,
-                const SsvOptions& options, SsvScaling* scaling) {
-  using Problem = SsvProblem<In, Out>;
+                const SsvOptions& options, SsvScaling* scaling, WorstCase* worst) {
+  using Scalings = ScalingProblem<In, Out>;
+  const Eigen::Index n_in = x_in.rows(), n_out = x_in.cols();
+  typename Scalings::Loop x = x_in;
+  typename Scalings::Radii w = radii_in;
+  keep_loops(x, w);
   SsvBounds out;
-  // Scaled to order one, so that tolerances are relative and nothing under- or overflows.
-  const double x_scale = x_in.cwiseAbs().maxCoeff();
-  const double w_scale = radii_in.maxCoeff();
-  if (x_scale == 0.0 || w_scale == 0.0) {
-    out.certified = true;
-    return out;
+  // Scaled to order one, so that nothing under- or overflows.
+  const double x_scale = std::max(x.real().cwiseAbs().maxCoeff(), x.imag().cwiseAbs().maxCoeff());
+  const double w_scale = w.maxCoeff();
+  if (worst != nullptr) worst->delta.resize(0, 0);
+  if (x_scale == 0.0 || w_scale == 0.0) return out;
+  x /= x_scale;
+  w /= w_scale;
+  typename Scalings::Variables theta(n_in + n_out - 2);
+  const bool warm = scaling != nullptr && scaling->log_s.size() == n_out && scaling->log_t.size() == n_in;
+  for (Eigen::Index i = 1; i < n_out; ++i) theta(i - 1) = warm ? scaling->log_s(i) - scaling->log_s(0) : 0.0;
+  for (Eigen::Index j = 1; j < n_in; ++j) theta(n_out + j - 2) = warm ? scaling->log_t(j) - scaling->log_t(0) : 0.0;
+  typename PhaseProblem<In, Out>::Phases phases;
+  Solver<In, Out> solver(x, w, options);
+  out = solver.solve(theta, phases);
+  if (worst != nullptr && out.lower > 0.0) {
+    const PhaseProblem<In, Out> problem(x, w);
+    const auto attained = problem.evaluate(phases, out.lower, true);
+    worst->delta = attained.perturbation * (w_scale / (attained.eigen.value * x_scale * w_scale));
   }
-  const typename Problem::Loop x = x_in / x_scale;
-  const typename Problem::Radii radii = radii_in / w_scale;
-  const double scale = x_scale * w_scale;
-  Problem problem(x, radii);
-
-  const Eigen::Index n_in = x.rows(), n_out = x.cols();
-  typename Problem::Variables theta = Problem::Variables::Zero(n_in + n_out - 2);
-  if (scaling != nullptr && scaling->log_s.size() == n_out && scaling->log_t.size() == n_in) {
-    theta.head(n_out - 1) = scaling->log_s.tail(n_out - 1);
-    theta.tail(n_in - 1) = scaling->log_t.tail(n_in - 1);
-  }
-  typename Problem::Point point = problem.descend(problem.evaluate(theta), 0.0, options);
-  out.lower = problem.lower_bound(point.v, point.u, 0);
-  const auto upper = [&] { return std::sqrt(point.sigma2); };
-  if (upper() - out.lower > options.agreement * upper()) {
-    out.lower = std::max(out.lower, problem.lower_bound(point.v, point.u, options.phase_iterations));
-  }
-  if (upper() - out.lower > options.agreement * upper()) {
-    // σ_max multiple at the optimum: follow smooth majorants towards it, then look from their singular vectors.
-    for (double power = 8.0; power < 3e4 && problem.evaluations() < options.max_iterations; power *= 4.0) {
-      const typename Problem::Point smooth = problem.descend(problem.evaluate(point.theta, power), power, options);
-      if (smooth.sigma2 < point.sigma2) point = smooth;
-      out.lower = std::max(out.lower, problem.lower_bound(smooth.v, smooth.u, options.phase_iterations));
-    }
-  }
-  out.upper = upper() * scale;
-  out.lower = std::min(out.lower, upper()) * scale;  // ρ is computed to round-off only
-  out.certified = out.upper - out.lower <= options.agreement * out.upper;
-  out.iterations = problem.evaluations();
-  out.gradient = point.gradient.size() > 0 ? point.gradient.cwiseAbs().maxCoeff() : 0.0;
+  out.upper *= x_scale * w_scale;
+  out.lower *= x_scale * w_scale;
   if (scaling != nullptr) {
     scaling->log_s.setZero(n_out);
     scaling->log_t.setZero(n_in);
-    scaling->log_s.tail(n_out - 1) = point.theta.head(n_out - 1);
-    scaling->log_t.tail(n_in - 1) = point.theta.tail(n_in - 1);
+    for (Eigen::Index i = 1; i < n_out; ++i) scaling->log_s(i) = theta(i - 1);
+    for (Eigen::Index j = 1; j < n_in; ++j) scaling->log_t(j) = theta(n_out + j - 2);
   }
   return out;
 }
 
 }  // namespace
 
-double h_infinity_value(const Eigen::Ref<const Eigen::MatrixXcd>& x, const Eigen::Ref<const Eigen::MatrixXd>& radii) {
-  FATMC_CHECK(radii.rows() == x.cols() && radii.cols() == x.rows(), "radii are n_out by n_in");
-  // D = I: a_j² = Σ_i w_ij², b_i² = n_in.
-  const Eigen::VectorXd a = radii.colwise().norm().transpose();
-  const Eigen::MatrixXcd n = a.asDiagonal() * x * std::sqrt(static_cast<double>(x.rows()));
-  return std::sqrt(std::max(0.0, largest_eigenpair_dense<Eigen::Dynamic>(n * n.adjoint()).value));
+std::string_view ssv_status_name(SsvStatus status) {
+  switch (status) {
+    case SsvStatus::met: return "met";
+    case SsvStatus::gap: return "gap";
+    case SsvStatus::not_converged: return "not_converged";
+  }
+  return "not_converged";
 }
 
 SsvBounds structured_singular_value(const Eigen::Ref<const Eigen::MatrixXcd>& x,
                                     const Eigen::Ref<const Eigen::MatrixXd>& radii, const SsvOptions& options,
-                                    SsvScaling* scaling) {
+                                    SsvScaling* scaling, WorstCase* worst) {
   FATMC_CHECK(radii.rows() == x.cols() && radii.cols() == x.rows(), "radii are n_out by n_in");
   FATMC_CHECK(x.allFinite() && radii.allFinite() && radii.minCoeff() >= 0.0, "finite loop, radii not negative");
-  if (x.rows() == 3 && x.cols() == 3) return solve<3, 3>(x, radii, options, scaling);
-  return solve<Eigen::Dynamic, Eigen::Dynamic>(x, radii, options, scaling);
+  if (x.rows() == 3 && x.cols() == 3) return solve<3, 3>(x, radii, options, scaling, worst);
+  return solve<Eigen::Dynamic, Eigen::Dynamic>(x, radii, options, scaling, worst);
 }
 
 }  // namespace fatmc
