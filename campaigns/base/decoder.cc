@@ -178,10 +178,10 @@ std::vector<std::vector<double>> Decoder::matrix(std::string_view key, std::size
   std::vector<std::vector<double>> zero(rows, std::vector<double>(columns, 0.0));
   const Tree* entry = get(key, true);
   if (entry == nullptr) return zero;
-  const std::string shape =
-      "write " + std::to_string(rows) + " rows of " + std::to_string(columns) + " numbers, [[..], [..]]";
+  const std::string shape = "write " + (rows > 0 ? std::to_string(rows) + " " : std::string()) + "rows of " +
+                            std::to_string(columns) + " numbers, [[..], [..]]";
   const auto* array = entry->array();
-  if (array == nullptr || array->items.size() != rows) {
+  if (array == nullptr || array->items.empty() || (rows > 0 && array->items.size() != rows)) {
     reject(key, "is not such a matrix, " + shape);
     return zero;
   }

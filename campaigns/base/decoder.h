@@ -46,7 +46,7 @@ class Decoder {
   std::vector<double> reals(std::string_view key, std::size_t count = 0, RealRange range = {},
                             std::optional<std::vector<double>> fallback = {});
   std::vector<std::string> texts(std::string_view key, std::optional<std::vector<std::string>> fallback = {});
-  /// Rows of numbers, all of one length.
+  /// Rows of `columns` numbers; `rows` = 0 allows any number of rows, at least one.
   std::vector<std::vector<double>> matrix(std::string_view key, std::size_t rows, std::size_t columns,
                                           RealRange range = {});
   /// A table inside this one, or null (an error when it is required).

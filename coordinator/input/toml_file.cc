@@ -51,7 +51,10 @@ Result<Tree> convert(const toml::node& node, const std::string& file) {
   return tree;
 }
 
-bool names_file(std::string_view key) { return key == "model" || key == "experiment" || key == "published"; }
+// Keys whose string is the name of a file to put in its place.
+bool names_file(std::string_view key) {
+  return key == "model" || key == "experiment" || key == "published";
+}
 
 Status resolve(Tree& tree, int depth);
 

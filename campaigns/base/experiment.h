@@ -1,0 +1,46 @@
+// What is flown: excitation, controller, environment, sensors, simulation. Decoded from a file with
+// kind = "experiment", see campaigns/experiments.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "campaigns/base/aircraft_model.h"
+#include "campaigns/base/tree.h"
+#include "core/base/error.h"
+#include "core/flight/flight.h"
+#include "core/random/random_stream.h"
+#include "core/signal/multisine.h"
+
+namespace fatmc {
+
+struct Excitation {
+  double period_s = 0.0;
+  int periods = 0;
+  std::vector<FrequencyRange> ranges;          ///< T Table 5-1
+  std::array<double, 3> amplitude_rad_s{};     ///< of every line, on p, q and r (open loop: normalised commands)
+  // Follows from the above and the rate.
+  int period_samples = 0;
+  std::vector<int> lines;
+};
+
+struct Experiment {
+  Excitation excitation;
+  FlightSetup flight;
+};
+
+class Decoder;
+/// Rows [first, last, step] in Hz.
+std::vector<FrequencyRange> decode_ranges(Decoder& table, std::string_view key);
+
+/// `model` brings the gyros that the experiment names by grade.
+Result<Experiment> decode_experiment(const Tree& tree, const AircraftModel& model);
+
+/// Lines and samples of a period from ranges, period and rate; `where` names the table for messages.
+Status resolve_excitation(Excitation& excitation, double rate_hz, const Tree& where);
+
+/// Random-phase multisines on the three axes, independent phases from the stream "excitation" of the trial.
+Eigen::MatrixX3d reference_signal(const Experiment& experiment, const TrialSeed& trial);
+
+}  // namespace fatmc

@@ -1,0 +1,67 @@
+#include "campaigns/coverage/coverage_cell.h"
+
+#include <algorithm>
+
+#include "campaigns/base/aircraft_model.h"
+#include "campaigns/base/decoder.h"
+
+namespace fatmc::coverage {
+namespace {
+
+Status apply_overrides(const Tree& tree, Experiment& experiment) {
+  Decoder table(tree, "cell");
+  for (const char* key : {"name", "repetitions"}) table.skip(key);
+  FlightSetup& flight = experiment.flight;
+  if (table.has("plant")) {
+    flight.plant = table.choice("plant", {"nonlinear", "linear"}) == "linear" ? FlightSetup::Plant::linear
+                                                                              : FlightSetup::Plant::nonlinear;
+  }
+  flight.turbulence_m_s =
+      table.real("turbulence_sigma_m_s", {.low = 0.0, .high = 20.0}, flight.turbulence_m_s);
+  flight.step_s = table.real("rk4_step_s", {.low = 1e-5, .high = 0.1}, flight.step_s);
+  flight.turn_coordinator = table.boolean("turn_coordinator", flight.turn_coordinator);
+  if (table.has("amplitude_rad_s")) {
+    const std::vector<double> amplitude = table.reals("amplitude_rad_s", 3, {.low = 0.0, .high = 10.0});
+    std::copy(amplitude.begin(), amplitude.end(), experiment.excitation.amplitude_rad_s.begin());
+  }
+  const bool other_lines = table.has("ranges_hz");
+  if (other_lines) experiment.excitation.ranges = decode_ranges(table, "ranges_hz");
+  if (Status status = table.finish(); !status) return status;
+  return other_lines ? resolve_excitation(experiment.excitation, flight.rate_hz, tree) : Status{};
+}
+
+Status decode_estimator(const Tree& tree, CoverageCell& out) {
+  Decoder table(tree, "estimator");
+  out.estimator.n_e = static_cast<int>(table.integer("n_e", {.low = 1, .high = 1000}, out.estimator.n_e));
+  out.estimator.order = static_cast<int>(table.integer("order", {.low = 0, .high = 10}, out.estimator.order));
+  out.estimator.n_transient =
+      static_cast<int>(table.integer("n_transient", {.low = 1, .high = 1000}, out.estimator.n_transient));
+  out.speed_correction = table.boolean("speed_correction", out.speed_correction);
+  return table.finish();
+}
+
+}  // namespace
+
+Result<CoverageCell> decode_cell(const CampaignSpec& spec, std::uint32_t cell) {
+  Decoder top(spec.tree, "");
+  for (const char* key : {"campaign", "cell", "published"}) top.skip(key);
+  const Tree* model = top.table("model");
+  const Tree* experiment = top.table("experiment");
+  const Tree* estimator = top.table("estimator", false);
+  if (Status status = top.finish(); !status) return fail(status.error());
+
+  CoverageCell out;
+  auto aircraft = decode_aircraft_model(*model);
+  if (!aircraft) return fail(aircraft.error());
+  out.aircraft = aircraft->aircraft;
+  auto decoded = decode_experiment(*experiment, *aircraft);
+  if (!decoded) return fail(decoded.error());
+  out.experiment = std::move(*decoded);
+  if (Status status = apply_overrides(spec.cells.at(cell).tree, out.experiment); !status) return fail(status.error());
+  if (estimator != nullptr) {
+    if (Status status = decode_estimator(*estimator, out); !status) return fail(status.error());
+  }
+  return out;
+}
+
+}  // namespace fatmc::coverage

@@ -1,0 +1,84 @@
+// fatmc tables: published figures beside ours, from databases that exist.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "campaigns/registry_summaries.h"
+#include "coordinator/cli/command.h"
+#include "coordinator/report/tables.h"
+#include "coordinator/store/campaign_store.h"
+
+namespace fatmc::cli {
+namespace {
+
+struct Options {
+  std::vector<std::string> databases;
+  std::string only;
+  std::string format = "text";
+};
+
+// The databases of the last run stand in results/last, one a line.
+Result<std::vector<std::string>> last_databases() {
+  std::ifstream in("results/last");
+  std::vector<std::string> out;
+  for (std::string line; std::getline(in, line);) {
+    if (!line.empty()) out.push_back(line);
+  }
+  if (out.empty()) return fail(Error{"results/last", 0, "", "names no database: name one, or `fatmc run` a campaign first"});
+  return out;
+}
+
+Result<std::vector<TableRow>> rows_of(const std::string& path) {
+  auto reader = CampaignReader::open(path);
+  if (!reader) return fail(reader.error());
+  const SummaryStudy* study = find_summary_study(reader->spec().study);
+  if (study == nullptr) return std::vector<TableRow>{};
+  return study->tables(reader->spec(), reader->rows());
+}
+
+Exit run(const Options& options) {
+  std::vector<std::string> databases = options.databases;
+  if (databases.empty()) {
+    auto last = last_databases();
+    if (!last) return report(last.error());
+    databases = std::move(*last);
+  }
+  std::vector<TableRow> rows;
+  for (const std::string& path : databases) {
+    auto more = rows_of(path);
+    if (!more) return report(more.error());
+    rows.insert(rows.end(), more->begin(), more->end());
+  }
+  if (!options.only.empty()) {
+    std::vector<std::string> known;
+    for (const TableRow& row : rows) {
+      if (std::find(known.begin(), known.end(), row.table) == known.end()) known.push_back(row.table);
+    }
+    if (std::find(known.begin(), known.end(), options.only) == known.end()) {
+      std::string list;
+      for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+      return report(Error{"", 0, "--only",
+                          "no table \"" + options.only + "\" in these databases, write one of: " + list});
+    }
+    std::erase_if(rows, [&](const TableRow& row) { return row.table != options.only; });
+  }
+  print_tables(rows, options.format);
+  return Exit::done;
+}
+
+}  // namespace
+
+void add_tables_command(CLI::App& app, Exit& exit) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("tables", "published figures beside ours, from databases");
+  command->add_option("DB", options->databases, "databases; without any, those of the last run (results/last)");
+  command->add_option("--only", options->only, "one table, for instance 5-5");
+  command->add_option("--format", options->format, "text, markdown or json")
+      ->check(CLI::IsMember({"text", "markdown", "json"}))
+      ->capture_default_str();
+  command->footer("Example: fatmc tables results/coverage.db --only 5-5");
+  command->callback([options, &exit] { exit = run(*options); });
+}
+
+}  // namespace fatmc::cli

@@ -1,0 +1,109 @@
+#include "core/ident/interpolation_bias.h"
+
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "core/base/check.h"
+
+namespace fatmc {
+namespace {
+
+constexpr double kDrop = 1.0 - 1.0 / std::numbers::sqrt2;  // 3 dB as T has it, 1/sqrt(2)
+
+/// |g2 / g0| of every element over line k's window, in Hz^-2.
+void curvature(const LpmGrid& grid, const FrmEstimate& estimate, int k, std::vector<double>& g0,
+               std::vector<double>& g2, double* ratio) {
+  const int elements = estimate.n_out * estimate.n_in;
+  g0.assign(static_cast<std::size_t>(2 * elements), 0.0);
+  g2.assign(static_cast<std::size_t>(2 * elements), 0.0);
+  const auto constant = grid.constant_row(k);
+  const auto quadratic = grid.quadratic_row(k);
+  for (std::size_t w = 0; w < constant.size(); ++w) {
+    const auto* g = reinterpret_cast<const double*>(estimate.G.data(grid.first(k) + static_cast<int>(w)));
+    for (std::size_t e = 0; e < g0.size(); ++e) {
+      g0[e] += constant[w] * g[e];
+      g2[e] += quadratic[w] * g[e];
+    }
+  }
+  for (int e = 0; e < elements; ++e) {
+    const auto i = static_cast<std::size_t>(2 * e);
+    const double a = std::hypot(g0[i], g0[i + 1]);
+    ratio[e] = a > 0.0 ? std::hypot(g2[i], g2[i + 1]) / a : 0.0;
+  }
+}
+
+/// sum s_i d_i^E in Hz^E, exactly or as alpha (B_lpm / 2)^E.
+double moment(const LpmGrid& grid, int k, BiasConstant constant) {
+  if (constant == BiasConstant::exact_offsets) return grid.bias_moment(k);
+  const int order = grid.options().order;
+  double alpha = limit_bias_constant(order);
+  if (constant == BiasConstant::printed) {
+    const std::optional<double> printed = printed_bias_constant(order);
+    FATMC_CHECK(printed.has_value(), "Table 2-3 has orders 2, 4 and 6");
+    alpha = *printed;
+  }
+  const auto offsets = grid.offsets_hz(k);
+  const double b_lpm = (offsets.back() - offsets.front()) * grid.window() / (grid.window() - 1);
+  return alpha * std::pow(0.5 * b_lpm, grid.bias_exponent());
+}
+
+double binomial(int n, int k) {
+  double value = 1.0;
+  for (int i = 1; i <= k; ++i) value = value * (n - k + i) / i;
+  return value;
+}
+
+}  // namespace
+
+double limit_bias_constant(int order) {
+  FATMC_CHECK(order >= 0, "a degree");
+  const int n = order % 2 == 0 ? order + 2 : order + 1;
+  return binomial(n, n / 2) / binomial(2 * n, n);
+}
+
+std::optional<double> printed_bias_constant(int order) {
+  switch (order) {
+    case 2: return 0.0857;
+    case 4: return 8.65e-6;
+    case 6: return 4.86e-9;
+    default: return std::nullopt;
+  }
+}
+
+MatrixStack<double> interpolation_bias(const LpmGrid& grid, const FrmEstimate& estimate, BiasConstant constant) {
+  FATMC_CHECK(grid.line_count() == estimate.line_count(), "the grid behind the estimate");
+  const int elements = estimate.n_out * estimate.n_in;
+  MatrixStack<double> bias(estimate.n_out, estimate.n_in, estimate.line_count());
+  std::vector<double> g0, g2;
+  for (int k = 0; k < estimate.line_count(); ++k) {
+    double* b = bias.data(k);
+    curvature(grid, estimate, k, g0, g2, b);
+    const double sum = moment(grid, k, constant);
+    const int half_exponent = grid.bias_exponent() / 2;  // (2 / B_3dB)^2 = |g2 / g0| / kDrop
+    for (int e = 0; e < elements; ++e) {
+      double power = sum;
+      for (int i = 0; i < half_exponent; ++i) power *= b[e] / kDrop;
+      b[e] = power * std::abs(estimate.G.data(k)[e]);
+    }
+  }
+  return bias;
+}
+
+MatrixStack<double> three_db_range_hz(const LpmGrid& grid, const FrmEstimate& estimate) {
+  FATMC_CHECK(grid.line_count() == estimate.line_count(), "the grid behind the estimate");
+  MatrixStack<double> range(estimate.n_out, estimate.n_in, estimate.line_count());
+  std::vector<double> g0, g2;
+  for (int k = 0; k < estimate.line_count(); ++k) {
+    double* b = range.data(k);
+    curvature(grid, estimate, k, g0, g2, b);
+    for (int e = 0; e < estimate.n_out * estimate.n_in; ++e) {
+      b[e] = b[e] > 0.0 ? 2.0 * std::sqrt(kDrop / b[e]) : std::numeric_limits<double>::infinity();
+    }
+  }
+  return range;
+}
+
+}  // namespace fatmc

@@ -1,0 +1,165 @@
+#include "core/ident/lpm_grid.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace fatmc {
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+/// Rows x (degree + 1): powers of x.
+Eigen::MatrixXd vandermonde(std::span<const double> x, int degree) {
+  Eigen::MatrixXd v(static_cast<Eigen::Index>(x.size()), degree + 1);
+  for (Eigen::Index i = 0; i < v.rows(); ++i) {
+    double power = 1.0;
+    for (Eigen::Index g = 0; g < v.cols(); ++g, power *= x[static_cast<std::size_t>(i)]) v(i, g) = power;
+  }
+  return v;
+}
+
+template <typename T>
+std::span<const T> slice(const std::vector<T>& values, int k, int size) {
+  return std::span<const T>(values).subspan(index(k) * index(size), index(size));
+}
+
+Status check(const PeriodicExperiment& e, const LpmOptions& o, int n_in) {
+  const auto n = [](int value) { return std::to_string(value); };
+  if (o.n_e < 1) return fail(Error{"", 0, "n-e", n(o.n_e) + " lines on each side, take at least 1"});
+  if (o.order < 0 || o.order > 8) return fail(Error{"", 0, "order", n(o.order) + " is not in 0 ... 8"});
+  if (n_in < 1) return fail("an estimate needs at least one input");
+  if (e.period_samples < 3 || !(e.rate_hz > 0.0)) return fail("a period needs 3 samples and a positive rate");
+  if (e.periods < 2) return fail("the fast LPM needs at least 2 whole periods, the record holds " + n(e.periods));
+  for (std::size_t i = 0; i < e.lines.size(); ++i) {
+    if (e.lines[i] < 1 || 2 * e.lines[i] >= e.period_samples || (i > 0 && e.lines[i] <= e.lines[i - 1])) {
+      return fail(Error{"", 0, "excited_lines", "line " + n(e.lines[i]) +
+                                                    " is out of order or outside 1 ... half the period (" +
+                                                    n((e.period_samples - 1) / 2) + ")"});
+    }
+  }
+  const int window = 2 * o.n_e + 1;
+  if (static_cast<int>(e.lines.size()) < window) {
+    return fail(Error{"", 0, "n-e", "the window of 2 n_E + 1 = " + n(window) + " lines is wider than the " +
+                                        n(static_cast<int>(e.lines.size())) + " excited lines, take a smaller n_E"});
+  }
+  if (window - (o.order + 1) * n_in < 1) {
+    return fail(Error{"", 0, "n-e", "q = 2 n_E + 1 - (R + 1) n_in = " + n(window - (o.order + 1) * n_in) +
+                                        " leaves no degree of freedom, take n_E >= " +
+                                        n(((o.order + 1) * n_in + 1) / 2)});
+  }
+  if (2 * o.n_transient - (o.order + 1) < 1) {
+    return fail(Error{"", 0, "n-transient", n(o.n_transient) + " bins on each side leave no degree of freedom, take " +
+                                                n((o.order + 3) / 2) + " or more"});
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<LpmGrid> LpmGrid::create(PeriodicExperiment experiment, LpmOptions options, int n_in) {
+  if (Status status = check(experiment, options, n_in); !status) return fail(status.error());
+  LpmGrid grid;
+  grid.experiment_ = std::move(experiment);
+  grid.options_ = options;
+  grid.n_in_ = n_in;
+  grid.place_windows();
+  grid.place_transient_windows();
+  if (grid.transient_bins_.empty()) {
+    return fail(Error{"", 0, "n-transient", "there are fewer than " + std::to_string(2 * options.n_transient) +
+                                                " non-excited DFT bins in the excited band, take a smaller number"});
+  }
+  grid.fit_bias_polynomials();
+  return grid;
+}
+
+double LpmGrid::frequency_hz(int k) const {
+  return experiment_.lines[index(k)] * experiment_.rate_hz / experiment_.period_samples;
+}
+
+std::span<const double> LpmGrid::offsets_hz(int k) const { return slice(offsets_hz_, k, window()); }
+std::span<const double> LpmGrid::scaled_offsets(int k) const { return slice(scaled_offsets_, k, window()); }
+std::span<const int> LpmGrid::transient_bins(int k) const { return slice(transient_bins_, k, 2 * options_.n_transient); }
+std::span<const double> LpmGrid::transient_weights(int k) const {
+  return slice(transient_weights_, k, 2 * options_.n_transient);
+}
+std::span<const double> LpmGrid::transient_complement(int k) const {
+  return slice(transient_complement_, k, 2 * options_.n_transient * q_noise());
+}
+std::span<const double> LpmGrid::constant_row(int k) const { return slice(constant_rows_, k, window()); }
+std::span<const double> LpmGrid::quadratic_row(int k) const { return slice(quadratic_rows_, k, window()); }
+
+void LpmGrid::place_windows() {
+  for (int k = 0; k < line_count(); ++k) {
+    const int start = std::clamp(k - options_.n_e, 0, line_count() - window());
+    first_.push_back(start);
+    double largest = 0.0;
+    for (int i = start; i < start + window(); ++i) {
+      // Harmonics are whole numbers: their difference is exact, that of frequencies would not be.
+      const int distance = experiment_.lines[index(i)] - experiment_.lines[index(k)];
+      offsets_hz_.push_back(distance * experiment_.rate_hz / experiment_.period_samples);
+      largest = std::max(largest, std::abs(offsets_hz_.back()));
+    }
+    scale_hz_.push_back(largest);
+    for (const double offset : offsets_hz(k)) scaled_offsets_.push_back(offset / largest);
+  }
+}
+
+void LpmGrid::place_transient_windows() {
+  const int periods = experiment_.periods;
+  const int low = bin(0) - (periods - 1);
+  // Above half the rate there is nothing new; the half itself is real, not complex.
+  const int high = std::min(bin(line_count() - 1) + (periods - 1), (total_samples() - 1) / 2);
+  std::vector<int> candidates;
+  for (int m = low, line = 0; m <= high; ++m) {
+    if (line < line_count() && m == bin(line)) {
+      ++line;
+    } else {
+      candidates.push_back(m);
+    }
+  }
+  const int n = options_.n_transient;
+  if (static_cast<int>(candidates.size()) < 2 * n) return;
+  bin_count_ = high + 1;
+  for (int k = 0; k < line_count(); ++k) {
+    const auto above = std::lower_bound(candidates.begin(), candidates.end(), bin(k)) - candidates.begin();
+    const int start = std::clamp(static_cast<int>(above) - n, 0, static_cast<int>(candidates.size()) - 2 * n);
+    const auto bins = std::span(candidates).subspan(index(start), index(2 * n));
+    transient_bins_.insert(transient_bins_.end(), bins.begin(), bins.end());
+    const double largest = std::max(std::abs(bins.front() - bin(k)), std::abs(bins.back() - bin(k)));
+    std::vector<double> x;
+    for (const int m : bins) x.push_back((m - bin(k)) / largest);
+
+    // K^T = Q [R; 0]; the constant term of the fit is the first row of R^-1 Q_1^T, the residuals' coordinates are
+    // Q_2^T Z.
+    const Eigen::MatrixXd basis = vandermonde(x, options_.order);
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(basis);
+    const Eigen::MatrixXd q = qr.householderQ();
+    const Eigen::Index p = basis.cols();
+    Eigen::VectorXd row = Eigen::VectorXd::Unit(p, 0);
+    qr.matrixQR().topRows(p).triangularView<Eigen::Upper>().transpose().solveInPlace(row);
+    const Eigen::VectorXd t = q.leftCols(p) * row;
+    transient_weights_.insert(transient_weights_.end(), t.begin(), t.end());
+    mu_.push_back(1.0 + t.squaredNorm());
+    const Eigen::MatrixXd rest = q.rightCols(2 * n - p);
+    transient_complement_.insert(transient_complement_.end(), rest.data(), rest.data() + rest.size());
+  }
+}
+
+void LpmGrid::fit_bias_polynomials() {
+  const int degree = std::max(2, options_.order);  // a curvature needs degree 2
+  for (int k = 0; k < line_count(); ++k) {
+    const Eigen::MatrixXd basis = vandermonde(scaled_offsets(k), degree);
+    const Eigen::MatrixXd rows = basis.householderQr().solve(Eigen::MatrixXd::Identity(window(), window()));
+    double moment = 0.0;
+    for (int i = 0; i < window(); ++i) {
+      constant_rows_.push_back(rows(0, i));
+      quadratic_rows_.push_back(rows(2, i) / (scale_hz(k) * scale_hz(k)));
+      moment += rows(0, i) * std::pow(scaled_offsets(k)[index(i)], bias_exponent());
+    }
+    bias_moment_.push_back(std::abs(moment) * std::pow(scale_hz(k), bias_exponent()));
+  }
+}
+
+}  // namespace fatmc
