@@ -111,11 +111,13 @@ Problem problem() {
   out.targets.push_back({"r/zeta product", std::norm(yaw_zero), 1e-4 * omega * omega});
   out.targets.push_back({"T_theta1", -published::kTheta1, 0.1});
   out.targets.push_back({"T_theta2", theta2, 0.05});
-  out.targets.push_back({"r/xi", roll_zero, 0.3});
+  out.targets.push_back({"r/xi", roll_zero, 0.05});
   // Conventions of the model file: body axes such that level flight has 2.5 degrees and no deflection, at 45 % throttle.
   out.targets.push_back({"trim alpha", 2.5 * kPi / 180.0, 1e-5});
   out.targets.push_back({"trim eta", 0.0, 1e-5});
   out.targets.push_back({"trim throttle", 0.45, 1e-3});
+  // Ixx + Iyy - Izz = 2 times the integral of z^2 dm: small for a flat aircraft, never negative.
+  out.targets.push_back({"flatness", 0.8, 0.15});
 
   out.model = [poles, theta2, roll_zero](const Aircraft& a) {
     const Trim trim = trim_level(a);
@@ -130,10 +132,10 @@ Problem problem() {
     }
     // Sorted by magnitude: the slow pair of r/zeta_c comes first, s = 0 of q/eta_c before T_theta1.
     const std::vector<Complex> yaw = linear.zeros(2, 2);
-    if (yaw.size() < 2 || pitch.size() < 3) return Eigen::VectorXd(Eigen::VectorXd::Constant(17, std::nan("")));
+    if (yaw.size() < 2 || pitch.size() < 3) return Eigen::VectorXd(Eigen::VectorXd::Constant(18, std::nan("")));
     values.insert(values.end(), {(yaw[0] + yaw[1]).real(), (yaw[0] * yaw[1]).real(), pitch[1].real(),
                                  nearest(pitch, theta2).real(), nearest(linear.zeros(2, 0), roll_zero).real(),
-                                 trim.alpha_rad, trim.eta_rad, trim.throttle});
+                                 trim.alpha_rad, trim.eta_rad, trim.throttle, a.ixx_kg_m2 + a.iyy_kg_m2 - a.izz_kg_m2});
     return Eigen::VectorXd(Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
   };
   return out;

@@ -6,7 +6,7 @@
 //
 //   b = |sum_i s_i (2 d_i / B_3dB)^(R+2)| |G|
 //
-// with s the row of the least-squares fit that gives its constant term. For many lines evenly over [-B_lpm/2, B_lpm/2]
+// with s the row of the least-squares fit of degree R that gives its constant term. For many lines evenly over [-B_lpm/2, B_lpm/2]
 // the sum tends to alpha (B_lpm / B_3dB)^(R+2): writing y^n for n = R + 2 as P_n(y)/lead_n plus lower terms that the fit
 // reproduces, the fit's value at 0 is -P_n(0)/lead_n, and
 //

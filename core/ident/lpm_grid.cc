@@ -152,11 +152,16 @@ void LpmGrid::fit_bias_polynomials() {
   for (int k = 0; k < line_count(); ++k) {
     const Eigen::MatrixXd basis = vandermonde(scaled_offsets(k), degree);
     const Eigen::MatrixXd rows = basis.householderQr().solve(Eigen::MatrixXd::Identity(window(), window()));
+    Eigen::RowVectorXd constant = rows.row(0);
+    if (options_.order < degree) {  // what the LPM's own degree leaves over
+      const Eigen::MatrixXd own = vandermonde(scaled_offsets(k), options_.order);
+      constant = own.householderQr().solve(Eigen::MatrixXd::Identity(window(), window())).row(0);
+    }
     double moment = 0.0;
     for (int i = 0; i < window(); ++i) {
       constant_rows_.push_back(rows(0, i));
       quadratic_rows_.push_back(rows(2, i) / (scale_hz(k) * scale_hz(k)));
-      moment += rows(0, i) * std::pow(scaled_offsets(k)[index(i)], bias_exponent());
+      moment += constant(i) * std::pow(scaled_offsets(k)[index(i)], bias_exponent());
     }
     bias_moment_.push_back(std::abs(moment) * std::pow(scale_hz(k), bias_exponent()));
   }

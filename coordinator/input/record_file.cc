@@ -1,0 +1,137 @@
+#include "coordinator/input/record_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "campaigns/base/decoder.h"
+#include "coordinator/input/toml_file.h"
+#include "core/base/text.h"
+#include "core/record/column_file.h"
+#include "core/record/periodicity.h"
+
+namespace fatmc {
+namespace {
+
+/// Columns of the names under `key`; a name that the CSV lacks is rejected.
+std::vector<int> role(Decoder& table, const char* key, const Record& record, bool required) {
+  std::vector<int> columns;
+  std::vector<std::string> names =
+      required ? table.texts(key) : table.texts(key, std::vector<std::string>{});
+  for (const std::string& name : names) {
+    const int c = record.column(name);
+    if (c < 0) {
+      table.reject(key, "the CSV has no column \"" + name + "\", it has " + join(record.names));
+    } else if (std::find(columns.begin(), columns.end(), c) != columns.end()) {
+      table.reject(key, "names \"" + name + "\" twice");
+    } else {
+      columns.push_back(c);
+    }
+  }
+  return columns;
+}
+
+Status decode(const Tree& file, Record& record) {
+  Decoder top(file, "");
+  const Tree* tree = top.table("record");
+  if (tree == nullptr) return top.finish();
+  Decoder table(*tree, "record");
+  record.rate_hz = table.has("rate_hz") ? table.real("rate_hz", {.low = 1e-9, .high = 1e9}) : 0.0;
+  record.reference = role(table, "reference", record, false);
+  record.input = role(table, "input", record, true);
+  record.output = role(table, "output", record, true);
+  record.auxiliary = role(table, "auxiliary", record, false);
+  constexpr std::int64_t kMost = 1'000'000'000;
+  record.period_samples = static_cast<int>(table.integer("period_samples", {.low = 3, .high = kMost}, 0));
+  record.periods = static_cast<int>(table.integer("periods", {.low = 1, .high = kMost}, 0));
+  for (const double line : table.reals("excited_lines", 0, {.low = 1.0, .high = 1e9}, std::vector<double>{})) {
+    if (line != std::floor(line)) table.reject("excited_lines", shortest(line) + " is not a whole harmonic");
+    record.excited_lines.push_back(static_cast<int>(line));
+  }
+  if (!record.excited_lines.empty() && record.period_samples == 0) {
+    table.reject("excited_lines", "are harmonics of a period, give period_samples too");
+  }
+  if (table.has("controller_gain")) {
+    const auto rows = table.matrix("controller_gain", record.input.size(), record.output.size());
+    Eigen::MatrixXd gain(static_cast<Eigen::Index>(record.input.size()),
+                         static_cast<Eigen::Index>(record.output.size()));
+    gain.setZero();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      for (std::size_t j = 0; j < rows[i].size(); ++j) {
+        gain(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rows[i][j];
+      }
+    }
+    record.controller_gain = gain;
+  }
+  record.hold = table.choice("hold", {"zoh", "continuous"}, "zoh") == "zoh" ? Hold::zoh : Hold::continuous;
+  if (table.has("trim_speed_m_s")) record.trim_speed_m_s = table.real("trim_speed_m_s", {.low = 1e-3, .high = 1e4});
+  // Other tables of the file ([environment]) belong to other commands.
+  return table.finish();
+}
+
+}  // namespace
+
+std::string record_toml_beside(const std::string& csv_path) {
+  return std::filesystem::path(csv_path).replace_extension(".toml").string();
+}
+
+Result<Record> read_record(const std::string& csv_path, const std::string& toml_path) {
+  const std::string meta = toml_path.empty() ? record_toml_beside(csv_path) : toml_path;
+  if (!std::filesystem::exists(csv_path)) return fail(Error{csv_path, 0, "", "does not exist, name a CSV"});
+  if (!std::filesystem::exists(meta)) {
+    return fail(Error{meta, 0, "", "does not exist: a record needs a TOML with a table [record] that names its input "
+                                   "and output columns (beside the CSV, or --meta FILE)"});
+  }
+  Result<Tree> tree = read_toml(meta);
+  if (!tree) return fail(tree.error());
+  Result<Columns> columns = read_columns(csv_path);
+  if (!columns) return fail(columns.error());
+  Record record;
+  record.names = std::move(columns->names);
+  record.samples = std::move(columns->values);
+  if (Status status = decode(*tree, record); !status) return fail(status.error());
+  if (const int t = record.column("t"); t >= 0) {
+    const Result<double> rate = rate_from_time(record.samples.col(t), csv_path);
+    if (!rate) return fail(rate.error());
+    if (record.rate_hz > 0.0 && std::abs(*rate / record.rate_hz - 1.0) > 1e-3) {
+      return fail(Error{csv_path, 0, "t", "runs at " + significant(*rate, 6) + " Hz, rate_hz in " + meta + " is " +
+                                              shortest(record.rate_hz)});
+    }
+    if (record.rate_hz == 0.0) record.rate_hz = *rate;
+  }
+  if (Status status = validate(record, csv_path); !status) return fail(status.error());
+  return record;
+}
+
+Status complete_period(Record& record, const std::string& file) {
+  const bool referenced = !record.reference.empty();
+  const Eigen::MatrixXd excitation = record.channels(referenced ? record.reference : record.input);
+  const std::string what = referenced ? "reference" : "input";
+  if (record.period_samples == 0) {
+    record.period_samples = find_period(excitation);
+    if (record.period_samples == 0) {
+      return fail(Error{file, 0, "period_samples", "the " + what + " does not repeat within the record: the method "
+                                                   "needs two whole periods of a periodic excitation"});
+    }
+    if (Status status = validate(record, file); !status) return status;
+  }
+  if (record.periods < 2) {
+    return fail(Error{file, 0, "periods", "the record holds one period, the method needs two or more"});
+  }
+  if (referenced) {
+    const double error = repetition_error(excitation, record.period_samples);
+    if (error > 0.05) {
+      return fail(Error{file, 0, "period_samples", "the reference does not repeat after " +
+                                                       std::to_string(record.period_samples) + " samples (" +
+                                                       significant(100.0 * error, 3) + " % of its variance differs)"});
+    }
+  }
+  if (record.excited_lines.empty()) {
+    Result<std::vector<int>> lines = find_excited_lines(excitation, record.period_samples);
+    if (!lines) return fail(Error{file, 0, "excited_lines", lines.error().message});
+    record.excited_lines = std::move(*lines);
+  }
+  return {};
+}
+
+}  // namespace fatmc
