@@ -59,8 +59,18 @@ Exit print_summary(const std::string& database) {
     report(tables.error());
     return Exit::failed;
   }
+  // Curves take many rows: they wait for `fatmc tables`.
+  std::vector<TableRow> shown;
+  std::set<std::string> curves;
+  for (const TableRow& row : *tables) {
+    if (row.table.starts_with("Fig.")) curves.insert(row.table);
+    else shown.push_back(row);
+  }
   std::printf("\n");
-  print_tables(*tables, TableFormat::text);
+  print_tables(shown, TableFormat::text);
+  for (const std::string& name : curves) {
+    std::printf("\n%s: fatmc tables %s --only \"%s\"\n", name.c_str(), database.c_str(), name.c_str());
+  }
   return Exit::done;
 }
 
