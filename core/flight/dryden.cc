@@ -133,17 +133,19 @@ Dryden::Dryden(double sigma, double airspeed, double span, double tick_s) : tick
 
 namespace {
 
+/// x <- A x + F n, n standard normal; A and F lower triangular, stored by columns.
 template <int N>
 inline void step_chain(const Eigen::Matrix<double, N, N>& transition, const Eigen::Matrix<double, N, N>& factor,
                        double* x, RandomStream& random) {
-  std::array<double, N> normal;
+  const double* const a = transition.data();
+  const double* const f = factor.data();
+  double normal[N];
   for (double& value : normal) value = random.normal();
-  std::array<double, N> next{};
-  for (int i = 0; i < N; ++i) {
-    for (int j = 0; j < N; ++j) next[i] += transition(i, j) * x[j];
-    for (int j = 0; j <= i; ++j) next[i] += factor(i, j) * normal[j];
+  for (int i = N - 1; i >= 0; --i) {  // from below: x above is still old
+    double sum = 0.0;
+    for (int j = 0; j <= i; ++j) sum += a[N * j + i] * x[j] + f[N * j + i] * normal[j];
+    x[i] = sum;
   }
-  for (int i = 0; i < N; ++i) x[i] = next[i];
 }
 
 }  // namespace
@@ -166,7 +168,8 @@ void Dryden::advance(StateVector& x, RandomStream& random) const {
 
 Dryden::Gusts Dryden::gusts(const StateVector& x) const {
   const auto row = [](const Eigen::Matrix<double, 2, 3>& c, int i, const double* s) {
-    return c(i, 0) * s[0] + c(i, 1) * s[1] + c(i, 2) * s[2];
+    const double* const at = c.data() + i;  // stored by columns of two
+    return at[0] * s[0] + at[2] * s[1] + at[4] * s[2];
   };
   return {x[0], row(side_output_, 0, &x[1]), row(vertical_output_, 0, &x[4]), x[7],
           row(vertical_output_, 1, &x[4]), row(side_output_, 1, &x[1])};

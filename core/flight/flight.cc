@@ -24,8 +24,18 @@ struct Observation {
   double level_turn;  ///< sin(phi) cos(theta)
 };
 
+/// Limits of the flow angles as what velocities compare with.
+struct AngleLimits {
+  explicit AngleLimits(const Validity& v)
+      : tan_alpha_min(std::tan(v.alpha_min_rad)),
+        tan_alpha_max(std::tan(v.alpha_max_rad)),
+        sin_beta_max(std::sin(v.beta_max_rad)) {}
+  double tan_alpha_min, tan_alpha_max, sin_beta_max;
+};
+
 /// Where the model stops being valid. Comparisons are written so that a NaN fails them.
-Ending judge(const Validity& limits, const Observation& at, const Gust<double>& gust, double airspeed) {
+Ending judge(const Validity& limits, const AngleLimits& angles, const Observation& at, const Gust<double>& gust,
+             double airspeed) {
   if (!std::isfinite(airspeed + at.rates[0] + at.rates[1] + at.rates[2] + at.phi + at.theta)) {
     return Ending::not_finite;
   }
@@ -34,10 +44,10 @@ Ending judge(const Validity& limits, const Observation& at, const Gust<double>& 
   const double v = at.velocity[1] - gust.velocity[1];
   const double w = at.velocity[2] - gust.velocity[2];
   // alpha between -pi/2 and pi/2 compares as its tangent; flying backwards is beyond any limit.
-  if (!(u > 0.0 && w >= u * std::tan(limits.alpha_min_rad) && w <= u * std::tan(limits.alpha_max_rad))) {
+  if (!(u > 0.0 && w >= u * angles.tan_alpha_min && w <= u * angles.tan_alpha_max)) {
     return Ending::angle_of_attack;
   }
-  if (!(std::abs(v) <= airspeed * std::sin(limits.beta_max_rad))) return Ending::side_slip;
+  if (!(std::abs(v) <= airspeed * angles.sin_beta_max)) return Ending::side_slip;
   if (!(std::abs(at.phi) <= limits.bank_max_rad)) return Ending::bank;
   if (!(std::abs(at.theta) <= limits.pitch_max_rad)) return Ending::pitch;
   return Ending::completed;
@@ -187,6 +197,7 @@ void Flight::fly_plant(PlantType plant, const Eigen::Ref<const Eigen::MatrixX3d>
   const bool windy = setup_.turbulence_m_s > 0.0;
   Dryden::StateVector air{};
   if (windy) air = dryden_.start(gust_noise);
+  const AngleLimits angles(aircraft_.validity);
   LimitCount count;
   std::array<double, 3> square_sum{};
   // Rates at the nodes of the last tick, its begin included; only an averaging unit reads them.
@@ -205,7 +216,7 @@ void Flight::fly_plant(PlantType plant, const Eigen::Ref<const Eigen::MatrixX3d>
     double air2 = 0.0;
     for (std::size_t i = 0; i < 3; ++i) air2 += (at.velocity[i] - gust.velocity[i]) * (at.velocity[i] - gust.velocity[i]);
     const double airspeed = std::sqrt(air2);
-    record.ending = judge(aircraft_.validity, at, gust, airspeed);
+    record.ending = judge(aircraft_.validity, angles, at, gust, airspeed);
     if (record.ending != Ending::completed) {
       record.ending_time_s = static_cast<double>(t) * tick_s_;
       break;
