@@ -51,38 +51,70 @@ Problem fat_problem() {
   const auto add = [&](std::string name, auto of, double prior, double spread) {
     out.parameters.push_back({std::move(name), of, prior, spread});
   };
-  add("Ixx", [](Aircraft& a) -> double& { return a.ixx_kg_m2; }, 8.9, 1.5);
-  add("Iyy", [](Aircraft& a) -> double& { return a.iyy_kg_m2; }, 7.6, 1.5);
-  add("Izz", [](Aircraft& a) -> double& { return a.izz_kg_m2; }, 15.5, 2.0);
-  add("Ixz", [](Aircraft& a) -> double& { return a.ixz_kg_m2; }, 0.2, 0.3);
-  add("CL0", [](Aircraft& a) -> double& { return a.lift.zero; }, 0.4, 0.2);
-  add("CLa", [](Aircraft& a) -> double& { return a.lift.alpha; }, 4.9, 0.4);
-  add("CLq", [](Aircraft& a) -> double& { return a.lift.q; }, 4.0, 2.0);
-  add("CLeta", [](Aircraft& a) -> double& { return a.lift.eta; }, 0.2, 0.03);
-  add("CD0", [](Aircraft& a) -> double& { return a.drag_zero; }, 0.028, 0.008);
-  add("k", [](Aircraft& a) -> double& { return a.drag_induced; }, 0.0175, 0.004);
-  add("Cm0", [](Aircraft& a) -> double& { return a.pitch.zero; }, 0.03, 0.1);
-  add("Cma", [](Aircraft& a) -> double& { return a.pitch.alpha; }, -0.66, 0.2);
-  add("Cmq", [](Aircraft& a) -> double& { return a.pitch.q; }, -12.0, 4.0);
-  add("Cmeta", [](Aircraft& a) -> double& { return a.pitch.eta; }, -1.4, 0.1);
-  add("CYb", [](Aircraft& a) -> double& { return a.side.beta; }, -0.35, 0.1);
-  add("CYp", [](Aircraft& a) -> double& { return a.side.p; }, 0.0, 0.05);
-  add("CYr", [](Aircraft& a) -> double& { return a.side.r; }, 0.12, 0.05);
-  add("CYzeta", [](Aircraft& a) -> double& { return a.side.zeta; }, 0.12, 0.04);
-  add("Clb", [](Aircraft& a) -> double& { return a.roll.beta; }, -0.08, 0.03);
-  add("Clp", [](Aircraft& a) -> double& { return a.roll.p; }, -0.66, 0.1);
-  add("Clr", [](Aircraft& a) -> double& { return a.roll.r; }, 0.17, 0.05);
-  add("Clxi", [](Aircraft& a) -> double& { return a.roll.xi; }, -0.25, 0.05);
-  add("Clzeta", [](Aircraft& a) -> double& { return a.roll.zeta; }, 0.004, 0.015);
-  add("Cnb", [](Aircraft& a) -> double& { return a.yaw.beta; }, 0.034, 0.01);
-  add("Cnp", [](Aircraft& a) -> double& { return a.yaw.p; }, -0.06, 0.02);
-  add("Cnr", [](Aircraft& a) -> double& { return a.yaw.r; }, -0.049, 0.015);
-  add("Cnxi", [](Aircraft& a) -> double& { return a.yaw.xi; }, 0.006, 0.004);
-  add("Cnzeta", [](Aircraft& a) -> double& { return a.yaw.zeta; }, -0.035, 0.008);
-  add("J", [](Aircraft& a) -> double& { return a.propulsion.inertia_kg_m2; }, 0.003, 0.001);
-  add("Qstall", [](Aircraft& a) -> double& { return a.propulsion.stall_torque_n_m; }, 5.0, 1.5);
-  add("zT", [](Aircraft& a) -> double& { return a.propulsion.offset_m; }, 0.05, 0.05);
-  add("CT1", [](Aircraft& a) -> double& { return a.propulsion.thrust[1]; }, -0.06, 0.02);
+  add(
+      "Ixx", [](Aircraft& a) -> double& { return a.ixx_kg_m2; }, 8.9, 1.5);
+  add(
+      "Iyy", [](Aircraft& a) -> double& { return a.iyy_kg_m2; }, 7.6, 1.5);
+  add(
+      "Izz", [](Aircraft& a) -> double& { return a.izz_kg_m2; }, 15.5, 2.0);
+  add(
+      "Ixz", [](Aircraft& a) -> double& { return a.ixz_kg_m2; }, 0.2, 0.3);
+  add(
+      "CL0", [](Aircraft& a) -> double& { return a.lift.zero; }, 0.4, 0.2);
+  add(
+      "CLa", [](Aircraft& a) -> double& { return a.lift.alpha; }, 4.9, 0.4);
+  add(
+      "CLq", [](Aircraft& a) -> double& { return a.lift.q; }, 4.0, 2.0);
+  add(
+      "CLeta", [](Aircraft& a) -> double& { return a.lift.eta; }, 0.2, 0.03);
+  add(
+      "CD0", [](Aircraft& a) -> double& { return a.drag_zero; }, 0.028, 0.008);
+  add(
+      "k", [](Aircraft& a) -> double& { return a.drag_induced; }, 0.0175, 0.004);
+  add(
+      "Cm0", [](Aircraft& a) -> double& { return a.pitch.zero; }, 0.03, 0.1);
+  add(
+      "Cma", [](Aircraft& a) -> double& { return a.pitch.alpha; }, -0.66, 0.2);
+  add(
+      "Cmq", [](Aircraft& a) -> double& { return a.pitch.q; }, -12.0, 4.0);
+  add(
+      "Cmeta", [](Aircraft& a) -> double& { return a.pitch.eta; }, -1.4, 0.1);
+  add(
+      "CYb", [](Aircraft& a) -> double& { return a.side.beta; }, -0.35, 0.1);
+  add(
+      "CYp", [](Aircraft& a) -> double& { return a.side.p; }, 0.0, 0.05);
+  add(
+      "CYr", [](Aircraft& a) -> double& { return a.side.r; }, 0.12, 0.05);
+  add(
+      "CYzeta", [](Aircraft& a) -> double& { return a.side.zeta; }, 0.12, 0.04);
+  add(
+      "Clb", [](Aircraft& a) -> double& { return a.roll.beta; }, -0.08, 0.03);
+  add(
+      "Clp", [](Aircraft& a) -> double& { return a.roll.p; }, -0.66, 0.1);
+  add(
+      "Clr", [](Aircraft& a) -> double& { return a.roll.r; }, 0.17, 0.05);
+  add(
+      "Clxi", [](Aircraft& a) -> double& { return a.roll.xi; }, -0.25, 0.05);
+  add(
+      "Clzeta", [](Aircraft& a) -> double& { return a.roll.zeta; }, 0.004, 0.015);
+  add(
+      "Cnb", [](Aircraft& a) -> double& { return a.yaw.beta; }, 0.034, 0.01);
+  add(
+      "Cnp", [](Aircraft& a) -> double& { return a.yaw.p; }, -0.06, 0.02);
+  add(
+      "Cnr", [](Aircraft& a) -> double& { return a.yaw.r; }, -0.049, 0.015);
+  add(
+      "Cnxi", [](Aircraft& a) -> double& { return a.yaw.xi; }, 0.006, 0.004);
+  add(
+      "Cnzeta", [](Aircraft& a) -> double& { return a.yaw.zeta; }, -0.035, 0.008);
+  add(
+      "J", [](Aircraft& a) -> double& { return a.propulsion.inertia_kg_m2; }, 0.003, 0.001);
+  add(
+      "Qstall", [](Aircraft& a) -> double& { return a.propulsion.stall_torque_n_m; }, 5.0, 1.5);
+  add(
+      "zT", [](Aircraft& a) -> double& { return a.propulsion.offset_m; }, 0.05, 0.05);
+  add(
+      "CT1", [](Aircraft& a) -> double& { return a.propulsion.thrust[1]; }, -0.06, 0.02);
 
   // Poles: real and imaginary part, exactly; scaled to 1e-5 of |s|.
   std::vector<Complex> poles;
@@ -106,7 +138,8 @@ Problem fat_problem() {
   out.targets.push_back({"T_theta1", -published::kTheta1, 0.1});
   out.targets.push_back({"T_theta2", theta2, 0.05});
   out.targets.push_back({"r/xi", roll_zero, 0.05});
-  // Conventions of the model file: body axes such that level flight has 2.5 degrees and no deflection, at 45 % throttle.
+  // Conventions of the model file: body axes such that level flight has 2.5 degrees and no deflection, at 45
+  // % throttle.
   out.targets.push_back({"trim alpha", 2.5 * kPi / 180.0, 1e-5, true});
   out.targets.push_back({"trim eta", 0.0, 1e-5, true});
   out.targets.push_back({"trim throttle", 0.45, 1e-3, true});
@@ -126,11 +159,14 @@ Problem fat_problem() {
     }
     // Sorted by magnitude: the slow pair of r/zeta_c comes first, s = 0 of q/eta_c before T_theta1.
     const std::vector<Complex> yaw = linear.zeros(2, 2);
-    if (yaw.size() < 2 || pitch.size() < 3) return Eigen::VectorXd(Eigen::VectorXd::Constant(18, std::nan("")));
-    values.insert(values.end(), {(yaw[0] + yaw[1]).real(), (yaw[0] * yaw[1]).real(), pitch[1].real(),
-                                 nearest(pitch, theta2).real(), nearest(linear.zeros(2, 0), roll_zero).real(),
-                                 trim.alpha_rad, trim.eta_rad, trim.throttle, a.ixx_kg_m2 + a.iyy_kg_m2 - a.izz_kg_m2});
-    return Eigen::VectorXd(Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+    if (yaw.size() < 2 || pitch.size() < 3)
+      return Eigen::VectorXd(Eigen::VectorXd::Constant(18, std::nan("")));
+    values.insert(values.end(),
+                  {(yaw[0] + yaw[1]).real(), (yaw[0] * yaw[1]).real(), pitch[1].real(),
+                   nearest(pitch, theta2).real(), nearest(linear.zeros(2, 0), roll_zero).real(),
+                   trim.alpha_rad, trim.eta_rad, trim.throttle, a.ixx_kg_m2 + a.iyy_kg_m2 - a.izz_kg_m2});
+    return Eigen::VectorXd(
+        Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
   };
   return out;
 }

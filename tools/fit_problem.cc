@@ -46,7 +46,8 @@ Matrix jacobian(const Problem& problem, const Vector& x) {
   return out;
 }
 
-/// Levenberg-Marquardt on targets and priors, exact targets weighted as `1/loosening`, until a step is below 1e-2.
+/// Levenberg-Marquardt on targets and priors, exact targets weighted as `1/loosening`, until a step is below
+/// 1e-2.
 void approach(const Problem& problem, double loosening, Vector& x, Fit& fit) {
   constexpr int most_iterations = 100;
   Vector weight(problem.targets.size());
@@ -99,7 +100,8 @@ Matrix hessian(const F& f, const Vector& x) {
   };
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     for (Eigen::Index j = 0; j <= i; ++j) {
-      out(i, j) = out(j, i) = (at(i, h, j, h) - at(i, h, j, -h) - at(i, -h, j, h) + at(i, -h, j, -h)) / (4.0 * h * h);
+      out(i, j) = out(j, i) =
+          (at(i, h, j, h) - at(i, h, j, -h) - at(i, -h, j, h) + at(i, -h, j, -h)) / (4.0 * h * h);
     }
   }
   return out;

@@ -43,9 +43,10 @@ struct Fit {
   Eigen::VectorXd reached;  ///< model values
 };
 
-/// Minimises sum ((model - value)/tolerance)^2 over the other targets + sum ((parameter - prior)/spread)^2 subject to
-/// model = value for the exact targets: Levenberg-Marquardt with the constraints as penalties comes near, Newton's
-/// method on the Lagrangian ends it. The priors choose among what the targets leave free.
+/// Minimises sum ((model - value)/tolerance)^2 over the other targets + sum ((parameter - prior)/spread)^2
+/// subject to model = value for the exact targets: Levenberg-Marquardt with the constraints as penalties
+/// comes near, Newton's method on the Lagrangian ends it. The priors choose among what the targets leave
+/// free.
 Fit solve(const Problem& problem);
 
 }  // namespace fatmc::fit

@@ -47,7 +47,8 @@ TEST(Dryden, EveryStationaryVarianceIsTheIntegralOfTheFormula) {
 }
 
 TEST(Dryden, ThePsdAtTheTicksIsTheFormulaWithItsAliases) {
-  // Sampling folds the spectrum: S_T(w) = sum over k of S(w + 2 pi k/T), two-sided; one-sided alike for w < pi/T.
+  // Sampling folds the spectrum: S_T(w) = sum over k of S(w + 2 pi k/T), two-sided; one-sided alike for w <
+  // pi/T.
   const Dryden air = fat_air();
   const double fold = 2.0 * kPi / kTick;
   for (int channel = 0; channel < 6; ++channel) {
@@ -66,8 +67,8 @@ TEST(Dryden, ThePsdAtTheTicksIsTheFormulaWithItsAliases) {
 }
 
 TEST(Dryden, SimulatedGustsHaveThePeriodogramOfTheFormula) {
-  // Bins of a length-N periodogram, |X|^2 T/(pi N) one-sided in w, are nearly independent exponentials: the mean over
-  // M of them has the relative standard error 1/sqrt(M).
+  // Bins of a length-N periodogram, |X|^2 T/(pi N) one-sided in w, are nearly independent exponentials: the
+  // mean over M of them has the relative standard error 1/sqrt(M).
   const Dryden air = fat_air();
   constexpr int runs = 400;
   constexpr int length = 5000;
@@ -140,8 +141,8 @@ TEST(Dryden, StartAndLaterGustsHaveTheStationaryCovariance) {
 }
 
 TEST(Dryden, TheAirTurnsAsItsVelocityChangesAlongThePath) {
-  // Slow gusts (below the lags): q_g = -dw_g/dx, r_g = dv_g/dx. Their cross spectrum is that of a derivative, so the
-  // covariance of q_g with w_g's change over a tick is negative, that of r_g with v_g's positive.
+  // Slow gusts (below the lags): q_g = -dw_g/dx, r_g = dv_g/dx. Their cross spectrum is that of a derivative,
+  // so the covariance of q_g with w_g's change over a tick is negative, that of r_g with v_g's positive.
   const Dryden air = fat_air();
   RandomStream random(TrialSeed{13, 0, 0, 0}, "turbulence");
   auto x = air.start(random);

@@ -58,7 +58,9 @@ TEST(Fit, AConstraintHoldsExactlyAndThePriorsChooseTheRest) {
   problem.parameters.push_back({"mass", [](Aircraft& a) -> double& { return a.mass_kg; }, 1.0, 1.0});
   problem.parameters.push_back({"span", [](Aircraft& a) -> double& { return a.span_m; }, 1.0, 1.0});
   problem.targets.push_back({"product", 2.0, 1e-3, true});
-  problem.model = [](const Aircraft& a) { return Eigen::VectorXd(Eigen::VectorXd::Constant(1, a.mass_kg * a.span_m)); };
+  problem.model = [](const Aircraft& a) {
+    return Eigen::VectorXd(Eigen::VectorXd::Constant(1, a.mass_kg * a.span_m));
+  };
   const Fit fit = solve(problem);
   EXPECT_TRUE(fit.converged);
   EXPECT_NEAR(fit.aircraft.mass_kg, std::sqrt(2.0), 1e-8);

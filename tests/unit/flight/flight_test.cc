@@ -81,8 +81,9 @@ TEST(Flight, TheTurnCoordinatorAddsTheYawRateOfACoordinatedTurn) {
   const Eigen::Index last = 499;
   const double phi = record.auxiliary(last, 0);
   EXPECT_GT(phi, 0.1);
-  const double wanted = 0.1 * (kGravity / record.auxiliary(last, 2) * std::sin(phi) * std::cos(record.auxiliary(last, 1)) -
-                               record.output(last, 2));
+  const double wanted =
+      0.1 * (kGravity / record.auxiliary(last, 2) * std::sin(phi) * std::cos(record.auxiliary(last, 1)) -
+             record.output(last, 2));
   EXPECT_NEAR(record.input(last, 2), wanted, 1e-12);
 }
 
@@ -142,7 +143,8 @@ TEST(Flight, GustsEnterTheLinearPlantAsTheyEnterTheNonlinearOne) {
 }
 
 TEST(Flight, GustsActOnThePlantAndNotOnTheMeasurement) {
-  // y[0] is measured before any gust has acted, so that it is exactly trim, while the airspeed already feels the gust.
+  // y[0] is measured before any gust has acted, so that it is exactly trim, while the airspeed already feels
+  // the gust.
   FlightSetup setup;
   setup.turbulence_m_s = 1.5;
   const FlightRecord record = fly(setup, Eigen::MatrixX3d::Zero(10, 3));
@@ -161,7 +163,8 @@ TEST(Flight, TheClosedLoopFollowsTheSampledResponse) {
   constexpr Eigen::Index window = 5000;  // 100 s: 80 periods of 0.8 Hz
   const double hertz = 0.8;
   Eigen::MatrixX3d r = Eigen::MatrixX3d::Zero(ticks, 3);
-  for (Eigen::Index t = 0; t < ticks; ++t) r(t, 1) = 0.01 * std::cos(2.0 * kPi * hertz * 0.02 * static_cast<double>(t));
+  for (Eigen::Index t = 0; t < ticks; ++t)
+    r(t, 1) = 0.01 * std::cos(2.0 * kPi * hertz * 0.02 * static_cast<double>(t));
   FlightRecord record;
   flight->fly(r, TrialSeed{}, record);
   std::complex<double> sum = 0.0;

@@ -145,7 +145,8 @@ TEST_F(FatLinear, APositiveCommandGivesAPositiveRateOfItsAxis) {
 }
 
 TEST(Zeros, OfAKnownTransferFunctionAreFound) {
-  // (s^2 + 0.4 s + 4)/((s + 1)(s + 2)(s + 3)(s + 5)) in controller form, and a mode that the input does not reach.
+  // (s^2 + 0.4 s + 4)/((s + 1)(s + 2)(s + 3)(s + 5)) in controller form, and a mode that the input does not
+  // reach.
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(5, 5);
   a.topLeftCorner(4, 4) << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -30, -61, -41, -11;
   a(4, 4) = -7.0;
