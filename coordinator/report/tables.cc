@@ -13,24 +13,35 @@ namespace {
 
 constexpr std::size_t kColumns = 11;
 using Line = std::array<std::string, kColumns>;
-const Line kHeader = {"table", "row", "quantity", "unit", "published", "ours", "low", "high", "n", "verdict", "why"};
+const Line kHeader = {"table", "row",  "quantity", "unit",    "published", "ours",
+                      "low",   "high", "n",        "verdict", "why"};
 constexpr std::array<bool, kColumns> kIsNumber = {false, false, false, false, true, true,
                                                   true,  true,  true,  false, false};
 
 std::string number(double value) { return std::isfinite(value) ? significant(value, 5) : "-"; }
 
 Line line(const TableRow& row) {
-  return {row.table,       row.row,          row.quantity,        row.unit,    number(row.published), number(row.value),
-          number(row.low), number(row.high), std::to_string(row.n), row.verdict, row.why};
+  return {row.table,
+          row.row,
+          row.quantity,
+          row.unit,
+          number(row.published),
+          number(row.value),
+          number(row.low),
+          number(row.high),
+          std::to_string(row.n),
+          row.verdict,
+          row.why};
 }
 
 // Characters, not bytes, of UTF-8.
 std::size_t width(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-std::string join_line(const Line& cells, const std::array<std::size_t, kColumns>& widths, TableFormat format) {
+std::string join_line(const Line& cells, const std::array<std::size_t, kColumns>& widths,
+                      TableFormat format) {
   const bool markdown = format == TableFormat::markdown;
   std::string out = markdown ? "| " : "";
   for (std::size_t i = 0; i < kColumns; ++i) {
@@ -52,7 +63,9 @@ std::string rule(const std::array<std::size_t, kColumns>& widths) {
 }
 
 std::string format_json(const std::vector<TableRow>& rows) {
-  const auto real = [](double value) { return std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr; };
+  const auto real = [](double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr;
+  };
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
   for (const TableRow& row : rows) {
     out.push_back({{"table", row.table},

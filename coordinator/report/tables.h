@@ -10,8 +10,8 @@ namespace fatmc {
 
 enum class TableFormat { text, markdown, json };
 
-/// JSON: a list of {"table","row","quantity","unit","published","value","low","high","n","verdict","why"}, null for
-/// NaN. The others: a line a row, columns aligned, "-" for NaN.
+/// JSON: a list of {"table","row","quantity","unit","published","value","low","high","n","verdict","why"},
+/// null for NaN. The others: a line a row, columns aligned, "-" for NaN.
 std::string format_tables(const std::vector<TableRow>& rows, TableFormat format);
 
 /// The same, to standard output.
