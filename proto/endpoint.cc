@@ -9,7 +9,8 @@ namespace {
 bool is_number(std::string_view text, int high) {
   int value = 0;
   const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  return !text.empty() && end.ec == std::errc() && end.ptr == text.data() + text.size() && value >= 0 && value <= high;
+  return !text.empty() && end.ec == std::errc() && end.ptr == text.data() + text.size() && value >= 0 &&
+         value <= high;
 }
 
 bool is_loopback(std::string_view host) {
@@ -35,8 +36,9 @@ Status check_plain_endpoint(const std::string& endpoint, const std::string& opti
   }
   if (!is_loopback(text.substr(6, colon - 6))) {
     return fail(Error{"", 0, option,
-                      "\"" + endpoint + "\" is not on the loopback, where alone plain TCP is allowed; write "
-                      "tcp://127.0.0.1:PORT (and reach it from elsewhere through an SSH tunnel)"});
+                      "\"" + endpoint +
+                          "\" is not on the loopback, where alone plain TCP is allowed; write "
+                          "tcp://127.0.0.1:PORT (and reach it from elsewhere through an SSH tunnel)"});
   }
   return {};
 }

@@ -132,7 +132,8 @@ tl::unexpected<Error> malformed(const std::string& what) { return fail("malforme
 
 Result<Tree> read(const pb::Node& node, const pb::Welcome& welcome, int depth) {
   if (depth > kMaxDepth) return malformed("the spec is nested too deep");
-  if (node.file() >= static_cast<std::uint32_t>(welcome.files_size())) return malformed("no such file of the spec");
+  if (node.file() >= static_cast<std::uint32_t>(welcome.files_size()))
+    return malformed("no such file of the spec");
   if (node.line() > 1'000'000'000U) return malformed("a line number out of range");
   Tree tree;
   tree.file = welcome.files(static_cast<int>(node.file()));
@@ -158,11 +159,20 @@ Result<Tree> read(const pb::Node& node, const pb::Welcome& welcome, int depth) {
       tree.value = std::move(array);
       return tree;
     }
-    case pb::Node::kText: tree.value = node.text(); return tree;
-    case pb::Node::kReal: tree.value = node.real(); return tree;
-    case pb::Node::kInteger: tree.value = static_cast<std::int64_t>(node.integer()); return tree;
-    case pb::Node::kFlag: tree.value = node.flag(); return tree;
-    case pb::Node::VALUE_NOT_SET: break;
+    case pb::Node::kText:
+      tree.value = node.text();
+      return tree;
+    case pb::Node::kReal:
+      tree.value = node.real();
+      return tree;
+    case pb::Node::kInteger:
+      tree.value = static_cast<std::int64_t>(node.integer());
+      return tree;
+    case pb::Node::kFlag:
+      tree.value = node.flag();
+      return tree;
+    case pb::Node::VALUE_NOT_SET:
+      break;
   }
   return malformed("a spec value of no kind");
 }
@@ -180,12 +190,14 @@ Result<ComputedRow> read(const pb::Row& in) {
   row.detail = in.detail();
   row.metrics.reserve(static_cast<std::size_t>(in.metrics_size()));
   for (const auto& metric : in.metrics()) {
-    if (metric.name().empty() || metric.name().size() > kMaxName) return malformed("a metric without a usable name");
+    if (metric.name().empty() || metric.name().size() > kMaxName)
+      return malformed("a metric without a usable name");
     row.metrics.emplace_back(metric.name(), metric.value());
   }
   row.arrays.reserve(static_cast<std::size_t>(in.arrays_size()));
   for (const auto& array : in.arrays()) {
-    if (array.name().empty() || array.name().size() > kMaxName) return malformed("an array without a usable name");
+    if (array.name().empty() || array.name().size() > kMaxName)
+      return malformed("an array without a usable name");
     row.arrays.emplace_back(array.name(), std::vector<double>(array.values().begin(), array.values().end()));
   }
   out.started_us = in.started_us();
@@ -205,7 +217,8 @@ bool is_incarnation(std::string_view text) {
 
 Result<Message> read(const pb::Hello& in) {
   if (!is_incarnation(in.incarnation())) return malformed("an incarnation that is no UUID");
-  if (in.build().size() > kMaxName || in.host().size() > kMaxName) return malformed("a HELLO of a wrong size");
+  if (in.build().size() > kMaxName || in.host().size() > kMaxName)
+    return malformed("a HELLO of a wrong size");
   if (in.jobs() < 1 || in.jobs() > 4096) return malformed("a number of jobs out of range");
   return Hello{in.protocol(), in.build(), in.incarnation(), in.host(), in.pid(), in.jobs()};
 }
@@ -270,20 +283,31 @@ std::string encode(const Message& message) {
 }
 
 Result<Message> decode(std::string_view frame) {
-  if (frame.size() > kMaxFrameBytes) return malformed("a frame of " + std::to_string(frame.size()) + " bytes");
+  if (frame.size() > kMaxFrameBytes)
+    return malformed("a frame of " + std::to_string(frame.size()) + " bytes");
   pb::Envelope envelope;
   if (!envelope.ParseFromArray(frame.data(), static_cast<int>(frame.size()))) return malformed("no envelope");
   switch (envelope.body_case()) {
-    case pb::Envelope::kHello: return read(envelope.hello());
-    case pb::Envelope::kWelcome: return read(envelope.welcome());
-    case pb::Envelope::kCredit: return Message(read(envelope.credit()));
-    case pb::Envelope::kLease: return read(envelope.lease());
-    case pb::Envelope::kResults: return read(envelope.results());
-    case pb::Envelope::kAck: return Message(Ack{envelope.ack().sequence()});
-    case pb::Envelope::kHeartbeat: return read(envelope.heartbeat());
-    case pb::Envelope::kBye: return read(envelope.bye());
-    case pb::Envelope::kRefused: return read(envelope.refused());
-    case pb::Envelope::BODY_NOT_SET: break;
+    case pb::Envelope::kHello:
+      return read(envelope.hello());
+    case pb::Envelope::kWelcome:
+      return read(envelope.welcome());
+    case pb::Envelope::kCredit:
+      return Message(read(envelope.credit()));
+    case pb::Envelope::kLease:
+      return read(envelope.lease());
+    case pb::Envelope::kResults:
+      return read(envelope.results());
+    case pb::Envelope::kAck:
+      return Message(Ack{envelope.ack().sequence()});
+    case pb::Envelope::kHeartbeat:
+      return read(envelope.heartbeat());
+    case pb::Envelope::kBye:
+      return read(envelope.bye());
+    case pb::Envelope::kRefused:
+      return read(envelope.refused());
+    case pb::Envelope::BODY_NOT_SET:
+      break;
   }
   return malformed("an envelope of no kind");
 }

@@ -1,8 +1,8 @@
 // The messages of docs/protocol.md as C++ types, and their frames.
 //
-// decode() takes whatever a socket gave: a frame that is malformed, too large, nested too deep or out of bounds
-// is an Error, never an exception or a crash. What needs the plan (does this cell exist?) is checked by the
-// receiver (coordinator/state).
+// decode() takes whatever a socket gave: a frame that is malformed, too large, nested too deep or out of
+// bounds is an Error, never an exception or a crash. What needs the plan (does this cell exist?) is checked
+// by the receiver (coordinator/state).
 #pragma once
 
 #include <cstddef>

@@ -18,7 +18,9 @@ int run(int argc, char** argv) {
       "Example: fatmc-worker --connect tcp://127.0.0.1:5555 --jobs 4",
       "fatmc-worker");
   app.add_option("--connect", options.endpoint, "endpoint of the coordinator, tcp://HOST:PORT")->required();
-  app.add_option("--jobs", options.jobs, "trials at a time")->check(CLI::Range(1, 4096))->capture_default_str();
+  app.add_option("--jobs", options.jobs, "trials at a time")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
   app.add_option("--leave-after", leave_after_s,
                  "end when no coordinator was heard for so many seconds (default: keep trying)")
       ->check(CLI::Range(0.1, 1e6));

@@ -18,7 +18,8 @@ Result<std::shared_ptr<LoadedCampaign>> LoadedCampaign::load(std::string id, con
   auto campaign = std::make_shared<LoadedCampaign>();
   campaign->id_ = std::move(id);
   campaign->study_ = *study;
-  for (std::size_t i = 0; i < spec->cells.size(); ++i) campaign->cells_.push_back(std::make_unique<Prepared>());
+  for (std::size_t i = 0; i < spec->cells.size(); ++i)
+    campaign->cells_.push_back(std::make_unique<Prepared>());
   campaign->spec_ = std::move(*spec);
   return campaign;
 }
@@ -140,8 +141,9 @@ void TrialRunner::compute(const Job& job) {
       failure = Refused{Refused::Code::unusable_spec, computed.error().text()};
     }
   } catch (const std::exception& e) {
-    failure = Refused{Refused::Code::trial_threw, "trial " + std::to_string(job.key.repetition) + " of cell " +
-                                                      std::to_string(job.key.cell) + " threw: " + e.what()};
+    failure =
+        Refused{Refused::Code::trial_threw, "trial " + std::to_string(job.key.repetition) + " of cell " +
+                                                std::to_string(job.key.cell) + " threw: " + e.what()};
   }
   const std::lock_guard lock(mutex_);
   --running_;

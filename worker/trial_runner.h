@@ -16,8 +16,8 @@
 
 namespace fatmc {
 
-/// A campaign as a worker knows it. Cells are prepared when their first trial comes, once, whatever the number of
-/// threads; a cell that is prepared is const.
+/// A campaign as a worker knows it. Cells are prepared when their first trial comes, once, whatever the
+/// number of threads; a cell that is prepared is const.
 class LoadedCampaign {
  public:
   /// Decodes the spec and finds its study.
@@ -58,7 +58,8 @@ struct RunnerNews {
   std::optional<Refused> failure;  ///< the worker cannot go on
 };
 
-/// All members may be called from any thread; in practice all but the compute threads' own are the I/O thread's.
+/// All members may be called from any thread; in practice all but the compute threads' own are the I/O
+/// thread's.
 class TrialRunner {
  public:
   /// Starts `jobs` threads. `wake_descriptor` is an eventfd that is written when there is news.

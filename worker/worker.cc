@@ -139,7 +139,8 @@ Worker::Worker(const WorkerOptions& options)
 
 void Worker::send_frame(const std::string& frame) {
   // A full queue means that nobody has read for long: what is lost is sent again later.
-  if (!socket_.send(zmq::buffer(frame), zmq::send_flags::dontwait)) spdlog::debug("queue full, message dropped");
+  if (!socket_.send(zmq::buffer(frame), zmq::send_flags::dontwait))
+    spdlog::debug("queue full, message dropped");
 }
 
 void Worker::say_hello() {
@@ -182,8 +183,8 @@ void Worker::handle_welcome(const Welcome& welcome) {
     unacknowledged_.clear();
     rows_.clear();
   }
-  // Trials leased by a coordinator that is gone are the new one's to lease. Loaded anew, since the new one may plan
-  // more repetitions.
+  // Trials leased by a coordinator that is gone are the new one's to lease. Loaded anew, since the new one
+  // may plan more repetitions.
   leases_.clear();
   runner_.clear();
   Result<std::shared_ptr<LoadedCampaign>> loaded = LoadedCampaign::load(welcome.campaign, welcome.spec);
@@ -255,7 +256,8 @@ void Worker::look_at_runner() {
 
 void Worker::send_results(bool all) {
   if (rows_.empty() || !welcomed_) return;
-  const bool due = all || rows_.size() >= kMaxRowsPerMessage || credit_.queued == 0 || now_ - last_results_ >= kBatchFor;
+  const bool due =
+      all || rows_.size() >= kMaxRowsPerMessage || credit_.queued == 0 || now_ - last_results_ >= kBatchFor;
   if (!due) return;
   auto first = rows_.begin();
   while (first != rows_.end()) {
@@ -302,7 +304,8 @@ void Worker::resend(bool overdue_only) {
 
 void Worker::do_what_is_due() {
   now_ = Clock::now();
-  if (options_.leave_after && now_ - last_heard_ > *options_.leave_after) return end(0, "the coordinator is gone");
+  if (options_.leave_after && now_ - last_heard_ > *options_.leave_after)
+    return end(0, "the coordinator is gone");
   if (!welcomed_) {
     if (now_ - last_hello_ >= kHelloAgain) say_hello();
     return;
@@ -326,8 +329,9 @@ milliseconds Worker::until_due() const {
 
 int Worker::run() {
   say_hello();
-  zmq::pollitem_t items[] = {
-      {socket_.handle(), 0, ZMQ_POLLIN, 0}, {nullptr, wake_.get(), ZMQ_POLLIN, 0}, {nullptr, signals_.get(), ZMQ_POLLIN, 0}};
+  zmq::pollitem_t items[] = {{socket_.handle(), 0, ZMQ_POLLIN, 0},
+                             {nullptr, wake_.get(), ZMQ_POLLIN, 0},
+                             {nullptr, signals_.get(), ZMQ_POLLIN, 0}};
   while (!exit_) {
     zmq::poll(items, std::size(items), until_due());
     now_ = Clock::now();

@@ -31,7 +31,8 @@ Status apply(const SpecChanges& changes, Tree& tree, const CampaignSpec& decoded
       return fail(Error{"", 0, "--scale", "gives more than 1000000000 repetitions, write a smaller one"});
     }
     const auto option = changes.scale ? "--scale" : "--trials";
-    items[i].set("repetitions", option_value(std::max<std::int64_t>(1, static_cast<std::int64_t>(scaled)), option));
+    items[i].set("repetitions",
+                 option_value(std::max<std::int64_t>(1, static_cast<std::int64_t>(scaled)), option));
   }
   tree.set("cell", std::move(cells));
   return {};

@@ -25,8 +25,8 @@ void add_spec_options(CLI::App& command, SpecChanges& changes);
 /// The same as words of a command line.
 std::vector<std::string> words_of(const SpecChanges& changes);
 
-/// Reads, changes and decodes a spec, and lets its study prepare every cell, so that whatever is wrong is known
-/// before a process is started or a file written.
+/// Reads, changes and decodes a spec, and lets its study prepare every cell, so that whatever is wrong is
+/// known before a process is started or a file written.
 Result<CampaignSpec> read_campaign(const std::string& path, const SpecChanges& changes);
 
 }  // namespace fatmc::cli

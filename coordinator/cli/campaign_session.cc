@@ -77,33 +77,39 @@ Exit print_summary(const std::string& database) {
 void report_counters(const CampaignState& state, std::uint64_t malformed) {
   const StateCounters& c = state.counters();
   if (c.conflicts > 0) {
-    std::fprintf(stderr,
-                 "fatmc: ALARM: %llu results differ from what is stored for the same trial; the stored ones were "
-                 "kept, but trials of this build are not reproducible\n",
-                 static_cast<unsigned long long>(c.conflicts));
+    std::fprintf(
+        stderr,
+        "fatmc: ALARM: %llu results differ from what is stored for the same trial; the stored ones were "
+        "kept, but trials of this build are not reproducible\n",
+        static_cast<unsigned long long>(c.conflicts));
   }
-  spdlog::info("duplicates {}, conflicts {}, reclaimed leases {}, refused {}, foreign {}, out of plan {}, malformed {}",
-               c.duplicates, c.conflicts, c.reclaimed, c.refused_hellos, c.foreign, c.out_of_plan, malformed);
+  spdlog::info(
+      "duplicates {}, conflicts {}, reclaimed leases {}, refused {}, foreign {}, out of plan {}, malformed "
+      "{}",
+      c.duplicates, c.conflicts, c.reclaimed, c.refused_hellos, c.foreign, c.out_of_plan, malformed);
 }
 
 // The serving part; returns nothing when all is stored.
 std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& options, CampaignStore& store) {
   StateOptions state_options;
-  state_options.first_lease = static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(
-                                                             std::chrono::system_clock::now().time_since_epoch())
-                                                             .count());
+  state_options.first_lease =
+      static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(
+                                     std::chrono::system_clock::now().time_since_epoch())
+                                     .count());
   CampaignState state(store.plan(spec), Welcome{spec.identity(), spec.tree, 0}, build_hash(), state_options);
   if (state.finished()) return std::nullopt;
   const auto server = CampaignServer::bind({.endpoint = options.endpoint}, state, store);
   if (!server) return report(server.error());
   if (options.workers == 0) {
     std::fprintf(stderr, "fatmc: %llu trials to do; start workers by: fatmc-worker --connect %s\n",
-                 static_cast<unsigned long long>(state.planned() - state.stored()), (*server)->endpoint().c_str());
+                 static_cast<unsigned long long>(state.planned() - state.stored()),
+                 (*server)->endpoint().c_str());
   }
   LocalWorkerOptions worker_options;
   worker_options.program = worker_program_beside_this();
   worker_options.endpoint = (*server)->endpoint();
-  worker_options.count = static_cast<unsigned>(std::min<std::uint64_t>(options.workers, state.planned() - state.stored()));
+  worker_options.count =
+      static_cast<unsigned>(std::min<std::uint64_t>(options.workers, state.planned() - state.stored()));
   worker_options.verbose = options.verbose;
   LocalWorkers workers(worker_options);
   ProgressLine progress(state.planned());
@@ -123,12 +129,12 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
   const std::string resume = "; what is stored stays, go on by: " + options.resume_command;
   if (end == ServerEnd::interrupted) {
     std::fprintf(stderr, "fatmc: stopped with %llu of %llu trials stored%s\n",
-                 static_cast<unsigned long long>(state.stored()), static_cast<unsigned long long>(state.planned()),
-                 resume.c_str());
+                 static_cast<unsigned long long>(state.stored()),
+                 static_cast<unsigned long long>(state.planned()), resume.c_str());
     return Exit::partial;
   }
-  std::fprintf(stderr, "fatmc: %s%s%s%s\n", workers.failure().c_str(), state.last_refusal().empty() ? "" : ": ",
-               state.last_refusal().c_str(), resume.c_str());
+  std::fprintf(stderr, "fatmc: %s%s%s%s\n", workers.failure().c_str(),
+               state.last_refusal().empty() ? "" : ": ", state.last_refusal().c_str(), resume.c_str());
   return Exit::failed;
 }
 
@@ -140,8 +146,9 @@ std::string shell_line(const std::vector<std::string>& words) {
   std::string out;
   for (const std::string& word : words) {
     if (!out.empty()) out += ' ';
-    const bool plain = !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                                               "0123456789-_./:=,+@%") == std::string::npos;
+    const bool plain = !word.empty() && word.find_first_not_of(
+                                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                            "0123456789-_./:=,+@%") == std::string::npos;
     if (plain) {
       out += word;
       continue;

@@ -16,14 +16,15 @@ struct CoordinatorOptions {
 };
 
 std::vector<std::string> resume_words(const CoordinatorOptions& options) {
-  std::vector<std::string> words{"fatmc", "coordinator", options.spec, "--bind", options.endpoint, "--db",
-                                 options.database};
+  std::vector<std::string> words{"fatmc",          "coordinator", options.spec,    "--bind",
+                                 options.endpoint, "--db",        options.database};
   for (std::string& word : words_of(options.changes)) words.push_back(std::move(word));
   return words;
 }
 
 Exit serve(const CoordinatorOptions& options) {
-  if (const Status status = check_plain_endpoint(options.endpoint, "--bind"); !status) return report(status.error());
+  if (const Status status = check_plain_endpoint(options.endpoint, "--bind"); !status)
+    return report(status.error());
   const Result<CampaignSpec> spec = read_campaign(options.spec, options.changes);
   if (!spec) return report(spec.error());
   SessionOptions session;
@@ -38,13 +39,16 @@ Exit serve(const CoordinatorOptions& options) {
 
 void add_coordinator_command(CLI::App& app, Exit& exit) {
   auto options = std::make_shared<CoordinatorOptions>();
-  CLI::App* command = app.add_subcommand("coordinator", "serves a campaign to workers that are started elsewhere");
+  CLI::App* command =
+      app.add_subcommand("coordinator", "serves a campaign to workers that are started elsewhere");
   command->footer(
       "Plain TCP is for the loopback alone. The database is resumed when it exists.\n"
-      "Example: fatmc coordinator campaigns/coverage/spec.toml --bind tcp://127.0.0.1:5555 --db results/coverage.db\n"
+      "Example: fatmc coordinator campaigns/coverage/spec.toml --bind tcp://127.0.0.1:5555 --db "
+      "results/coverage.db\n"
       "    and: fatmc-worker --connect tcp://127.0.0.1:5555 --jobs 2");
   command->add_option("SPEC", options->spec, "the campaign (TOML)")->required();
-  command->add_option("--bind", options->endpoint, "endpoint, tcp://127.0.0.1:PORT or ipc://PATH")->required();
+  command->add_option("--bind", options->endpoint, "endpoint, tcp://127.0.0.1:PORT or ipc://PATH")
+      ->required();
   command->add_option("--db", options->database, "database")->required();
   add_spec_options(*command, options->changes);
   command->add_flag("--verbose", options->verbose, "log messages to standard error");

@@ -9,7 +9,8 @@ namespace fatmc::cli {
 
 void add_digest_command(CLI::App& app, Exit& exit) {
   auto path = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("digest", "SHA-256 of all results of a database, in the order of trials");
+  CLI::App* command =
+      app.add_subcommand("digest", "SHA-256 of all results of a database, in the order of trials");
   command->footer(
       "Times, hosts and attempts are left out: whoever computed them, the same results give the same line.\n"
       "Example: fatmc digest results/coverage.db");

@@ -57,7 +57,8 @@ std::string csv_field(const std::string& text) {
 nlohmann::ordered_json json_value(const SQLite::Column& column) {
   if (column.isNull()) return nullptr;
   if (column.isInteger()) return column.getInt64();
-  if (column.isFloat()) return std::isfinite(column.getDouble()) ? nlohmann::ordered_json(column.getDouble()) : nullptr;
+  if (column.isFloat())
+    return std::isfinite(column.getDouble()) ? nlohmann::ordered_json(column.getDouble()) : nullptr;
   if (column.isBlob() && std::strcmp(column.getName(), "data") == 0 && column.getBytes() % 8 == 0) {
     std::vector<double> values(static_cast<std::size_t>(column.getBytes()) / sizeof(double));
     if (!values.empty()) std::memcpy(values.data(), column.getBlob(), values.size() * sizeof(double));
@@ -84,8 +85,10 @@ void print_json(SQLite::Statement& query) {
   std::printf("[");
   while (query.executeStep()) {
     nlohmann::ordered_json row = nlohmann::ordered_json::object();
-    for (int i = 0; i < query.getColumnCount(); ++i) row[query.getColumnName(i)] = json_value(query.getColumn(i));
-    std::printf("%s\n%s", first ? "" : ",", row.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    for (int i = 0; i < query.getColumnCount(); ++i)
+      row[query.getColumnName(i)] = json_value(query.getColumn(i));
+    std::printf("%s\n%s", first ? "" : ",",
+                row.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
     first = false;
   }
   std::printf("\n]\n");
@@ -109,7 +112,8 @@ void print_table(SQLite::Statement& query) {
   }
   for (const auto& line : lines) {
     std::string out;
-    for (std::size_t i = 0; i < line.size(); ++i) out += line[i] + std::string(widths[i] - line[i].size() + 2, ' ');
+    for (std::size_t i = 0; i < line.size(); ++i)
+      out += line[i] + std::string(widths[i] - line[i].size() + 2, ' ');
     out.erase(out.find_last_not_of(' ') + 1);
     std::printf("%s\n", out.c_str());
   }
@@ -146,7 +150,8 @@ void add_query_command(CLI::App& app, Exit& exit) {
   command->footer(
       "The tables are described in docs/schema.md; array data are shown as numbers.\n"
       "Example: fatmc query results/coverage.db --view failures\n"
-      "    and: fatmc query results/coverage.db --format csv --sql \"SELECT name, avg(value) FROM metrics GROUP BY 1\"");
+      "    and: fatmc query results/coverage.db --format csv --sql \"SELECT name, avg(value) FROM metrics "
+      "GROUP BY 1\"");
   command->add_option("DB", options->path, "database")->required();
   auto* view = command->add_option("--view", options->view, "what to show")
                    ->check(CLI::IsMember({"cells", "trials", "outcomes", "failures", "metrics", "arrays"}))

@@ -18,8 +18,8 @@ struct RunOptions {
 };
 
 std::string resume_command(const RunOptions& options, const std::string& database) {
-  std::vector<std::string> words{"fatmc", "run", options.spec, "--db", database, "--workers",
-                                 std::to_string(options.workers)};
+  std::vector<std::string> words{
+      "fatmc", "run", options.spec, "--db", database, "--workers", std::to_string(options.workers)};
   for (std::string& word : words_of(options.changes)) words.push_back(std::move(word));
   return shell_line(words);
 }
@@ -44,8 +44,11 @@ void add_run_command(CLI::App& app, Exit& exit) {
       "A database that exists is resumed; Ctrl-C stops cleanly (exit code 3), the same command goes on.\n"
       "Example: fatmc run campaigns/coverage/spec.toml --trials 200 --workers 2");
   command->add_option("SPEC", options->spec, "the campaign (TOML)")->required();
-  command->add_option("--db", options->database, "database (default: results/NAME.db, by the campaign's name)");
-  command->add_option("--workers", options->workers, "worker processes")->check(CLI::Range(1, 4096))->capture_default_str();
+  command->add_option("--db", options->database,
+                      "database (default: results/NAME.db, by the campaign's name)");
+  command->add_option("--workers", options->workers, "worker processes")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
   add_spec_options(*command, options->changes);
   command->add_flag("--verbose", options->verbose, "log messages to standard error");
   command->callback([options, &exit] { exit = run(*options); });

@@ -21,7 +21,9 @@ void print_cells(const CampaignReader& reader) {
       if (count.cell == name) outcomes += "  " + std::to_string(count.trials) + " " + count.outcome;
     }
     const std::string mean =
-        cells.getColumn(3).isNull() ? "" : "  " + significant(cells.getColumn(3).getDouble() * 1e3, 3) + " ms a trial";
+        cells.getColumn(3).isNull()
+            ? ""
+            : "  " + significant(cells.getColumn(3).getDouble() * 1e3, 3) + " ms a trial";
     std::printf("  %s: %s of %s%s%s\n", name.c_str(), cells.getColumn(2).getString().c_str(),
                 cells.getColumn(1).getString().c_str(), outcomes.c_str(), mean.c_str());
   }
@@ -29,11 +31,12 @@ void print_cells(const CampaignReader& reader) {
 
 void print_throughput(const CampaignReader& reader) {
   // Trials that ended within the last busy minute, so that pauses between runs do not count.
-  SQLite::Statement last(reader.database(),
-                         "WITH ended AS (SELECT started_us / 1e6 + duration_ns / 1e9 AS t FROM trial), "
-                         "top AS (SELECT max(t) AS t FROM ended) "
-                         "SELECT count(*), max(ended.t) - min(ended.t), strftime('%Y-%m-%dT%H:%M:%SZ', top.t, 'unixepoch') "
-                         "FROM ended, top WHERE ended.t > top.t - 60");
+  SQLite::Statement last(
+      reader.database(),
+      "WITH ended AS (SELECT started_us / 1e6 + duration_ns / 1e9 AS t FROM trial), "
+      "top AS (SELECT max(t) AS t FROM ended) "
+      "SELECT count(*), max(ended.t) - min(ended.t), strftime('%Y-%m-%dT%H:%M:%SZ', top.t, 'unixepoch') "
+      "FROM ended, top WHERE ended.t > top.t - 60");
   if (!last.executeStep() || last.getColumn(0).getInt64() < 2) return;
   const double span = last.getColumn(1).getDouble();
   if (!(span > 0.0)) return;

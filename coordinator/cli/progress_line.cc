@@ -46,7 +46,10 @@ std::string clock_text(double seconds) {
 }
 
 ProgressLine::ProgressLine(std::uint64_t total)
-    : total_(total), terminal_(::isatty(STDERR_FILENO) == 1), start_(std::chrono::steady_clock::now()), last_(start_) {}
+    : total_(total),
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      start_(std::chrono::steady_clock::now()),
+      last_(start_) {}
 
 void ProgressLine::show(std::uint64_t done) {
   const auto now = std::chrono::steady_clock::now();
@@ -58,7 +61,8 @@ void ProgressLine::show(std::uint64_t done) {
 
 void ProgressLine::draw(std::uint64_t done) {
   const std::string text = std::to_string(done) + "/" + std::to_string(total_) + " trials, " +
-                           significant(rate_.per_second(), 3) + "/s, ETA " + clock_text(rate_.seconds_left(total_ - done));
+                           significant(rate_.per_second(), 3) + "/s, ETA " +
+                           clock_text(rate_.seconds_left(total_ - done));
   if (terminal_) {
     const std::uint64_t filled = total_ > 0 ? kBarWidth * done / total_ : kBarWidth;
     std::fprintf(stderr, "\r[%s%s] %s\033[K", std::string(filled, '#').c_str(),

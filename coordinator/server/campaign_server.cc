@@ -71,15 +71,15 @@ CampaignServer::CampaignServer(const ServerOptions& options, CampaignState& stat
 
 CampaignServer::~CampaignServer() = default;
 
-Result<std::unique_ptr<CampaignServer>> CampaignServer::bind(const ServerOptions& options, CampaignState& state,
-                                                             CampaignStore& store) {
+Result<std::unique_ptr<CampaignServer>> CampaignServer::bind(const ServerOptions& options,
+                                                             CampaignState& state, CampaignStore& store) {
   if (Status status = check_plain_endpoint(options.endpoint, "--bind"); !status) return fail(status.error());
   std::unique_ptr<CampaignServer> server(new CampaignServer(options, state, store));
   try {
     server->parts_->socket.bind(options.endpoint);
   } catch (const zmq::error_t& e) {
-    return fail(Error{"", 0, "--bind", "\"" + options.endpoint + "\" cannot be used (" + e.what() +
-                                           "), write another port"});
+    return fail(Error{"", 0, "--bind",
+                      "\"" + options.endpoint + "\" cannot be used (" + e.what() + "), write another port"});
   }
   server->parts_->endpoint = server->parts_->socket.get(zmq::sockopt::last_endpoint);
   return server;
@@ -145,12 +145,14 @@ void CampaignServer::receive() {
 
 std::chrono::milliseconds CampaignServer::wait_time() const {
   if (parts_->batch.empty()) return options_.tick;
-  const auto left = std::chrono::ceil<std::chrono::milliseconds>(parts_->batch_since + options_.batch_wait - now());
+  const auto left =
+      std::chrono::ceil<std::chrono::milliseconds>(parts_->batch_since + options_.batch_wait - now());
   return std::clamp(left, std::chrono::milliseconds(0), options_.tick);
 }
 
 ServerEnd CampaignServer::run(const ServerHooks& hooks) {
-  zmq::pollitem_t items[] = {{parts_->socket.handle(), 0, ZMQ_POLLIN, 0}, {nullptr, parts_->signals, ZMQ_POLLIN, 0}};
+  zmq::pollitem_t items[] = {{parts_->socket.handle(), 0, ZMQ_POLLIN, 0},
+                             {nullptr, parts_->signals, ZMQ_POLLIN, 0}};
   MonotonicTime last_tick = now();
   ServerEnd end = ServerEnd::finished;
   while (!state_.finished()) {

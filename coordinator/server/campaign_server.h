@@ -1,8 +1,8 @@
 // The coordinator's socket loop: one thread that owns the ROUTER socket and the database.
 //
-// Messages go to CampaignState, whose decisions it carries out. Rows are gathered and committed in one transaction
-// as soon as there are 100, or the oldest has waited for 50 ms, or nothing more can come; only then are they
-// acknowledged. Messages that are malformed or too large are counted and dropped.
+// Messages go to CampaignState, whose decisions it carries out. Rows are gathered and committed in one
+// transaction as soon as there are 100, or the oldest has waited for 50 ms, or nothing more can come; only
+// then are they acknowledged. Messages that are malformed or too large are counted and dropped.
 #pragma once
 
 #include <signal.h>
@@ -45,8 +45,8 @@ class CampaignServer : private Outbox {
 
   /// With the port that was found for "*".
   [[nodiscard]] const std::string& endpoint() const;
-  /// Serves until all is stored, a signal comes, or a hook reports a failure; then says BYE to all workers. Throws
-  /// when the database fails.
+  /// Serves until all is stored, a signal comes, or a hook reports a failure; then says BYE to all workers.
+  /// Throws when the database fails.
   ServerEnd run(const ServerHooks& hooks);
   /// A process of this host has ended.
   void on_process_ended(std::uint32_t pid);
@@ -70,8 +70,8 @@ class CampaignServer : private Outbox {
   std::uint64_t malformed_ = 0;
 };
 
-/// Blocks SIGINT, SIGTERM and SIGCHLD, which the server reads from a descriptor, as long as it lives. To be made
-/// before any thread exists.
+/// Blocks SIGINT, SIGTERM and SIGCHLD, which the server reads from a descriptor, as long as it lives. To be
+/// made before any thread exists.
 class BlockedSignals {
  public:
   BlockedSignals();

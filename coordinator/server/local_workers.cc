@@ -18,7 +18,8 @@ namespace {
 
 constexpr const char* kLeaveAfterSeconds = "10";
 
-// A worker computes one trial at a time, so that libraries with threads of their own would only fight for cores.
+// A worker computes one trial at a time, so that libraries with threads of their own would only fight for
+// cores.
 std::vector<std::string> worker_environment() {
   std::vector<std::string> out;
   for (char** entry = environ; *entry != nullptr; ++entry) out.emplace_back(*entry);
@@ -53,8 +54,8 @@ void LocalWorkers::start() {
 }
 
 void LocalWorkers::spawn() {
-  std::vector<std::string> arguments{options_.program, "--connect", options_.endpoint, "--jobs", "1",
-                                     "--leave-after", kLeaveAfterSeconds};
+  std::vector<std::string> arguments{options_.program, "--connect",       options_.endpoint, "--jobs", "1",
+                                     "--leave-after",  kLeaveAfterSeconds};
   if (options_.verbose) arguments.emplace_back("--verbose");
   std::vector<std::string> environment = worker_environment();
   posix_spawnattr_t attributes;
@@ -68,8 +69,8 @@ void LocalWorkers::spawn() {
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", 0, 0);
   posix_spawn_file_actions_adddup2(&actions, 2, 1);  // standard output belongs to the tables
   pid_t pid = 0;
-  const int error = posix_spawn(&pid, options_.program.c_str(), &actions, &attributes, pointers(arguments).data(),
-                                pointers(environment).data());
+  const int error = posix_spawn(&pid, options_.program.c_str(), &actions, &attributes,
+                                pointers(arguments).data(), pointers(environment).data());
   posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&attributes);
   if (error != 0) throw std::system_error(error, std::generic_category(), "cannot start " + options_.program);
@@ -97,8 +98,8 @@ void LocalWorkers::judge(int status, std::uint64_t stored) {
   crashes_ = stored > stored_at_last_crash_ ? 1 : crashes_ + 1;
   stored_at_last_crash_ = stored;
   if (crashes_ >= options_.crashes_in_vain) {
-    failure_ = "workers ended " + std::to_string(crashes_) + " times without a trial done in between, at last by " +
-               how_it_ended(status);
+    failure_ = "workers ended " + std::to_string(crashes_) +
+               " times without a trial done in between, at last by " + how_it_ended(status);
     return;
   }
   ++restarts_;

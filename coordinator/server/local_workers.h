@@ -30,8 +30,8 @@ class LocalWorkers {
 
   /// Throws std::system_error when a process cannot be started.
   void start();
-  /// Collects processes that ended and replaces those that crashed. Returns the ids of those that ended. `stored`:
-  /// trials stored so far, from which it sees whether restarting gets anywhere.
+  /// Collects processes that ended and replaces those that crashed. Returns the ids of those that ended.
+  /// `stored`: trials stored so far, from which it sees whether restarting gets anywhere.
   std::vector<std::uint32_t> reap(std::uint64_t stored);
   /// Why no worker can be had any more; empty while they can.
   [[nodiscard]] const std::string& failure() const { return failure_; }

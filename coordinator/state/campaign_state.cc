@@ -8,8 +8,12 @@
 
 namespace fatmc {
 
-CampaignState::CampaignState(std::vector<PlanCell> plan, Welcome welcome, std::string build, StateOptions options)
-    : welcome_(std::move(welcome)), build_(std::move(build)), options_(options), next_lease_(options.first_lease) {
+CampaignState::CampaignState(std::vector<PlanCell> plan, Welcome welcome, std::string build,
+                             StateOptions options)
+    : welcome_(std::move(welcome)),
+      build_(std::move(build)),
+      options_(options),
+      next_lease_(options.first_lease) {
   welcome_.heartbeat_ms = static_cast<std::uint32_t>(options_.heartbeat.count());
   for (PlanCell& cell : plan) {
     CellState state;
@@ -58,15 +62,17 @@ void CampaignState::on_hello(const WorkerId& worker, const Hello& hello, Monoton
     last_refusal_ = reason;
     out.send(worker, Refused{code, std::move(reason)});
   };
-  if (hello.incarnation != worker) return refuse(Refused::Code::protocol, "the routing id is not the incarnation");
+  if (hello.incarnation != worker)
+    return refuse(Refused::Code::protocol, "the routing id is not the incarnation");
   if (hello.protocol != kProtocolVersion) {
     return refuse(Refused::Code::protocol, "the worker speaks protocol " + std::to_string(hello.protocol) +
                                                ", the coordinator " + std::to_string(kProtocolVersion) +
                                                "; use programs of one build");
   }
   if (hello.build != build_) {
-    return refuse(Refused::Code::build, "the worker's build " + hello.build.substr(0, 12) + " is not the coordinator's " +
-                                            build_.substr(0, 12) + "; use programs of one build");
+    return refuse(Refused::Code::build, "the worker's build " + hello.build.substr(0, 12) +
+                                            " is not the coordinator's " + build_.substr(0, 12) +
+                                            "; use programs of one build");
   }
   WorkerState& state = workers_[worker];
   state.hello = hello;
@@ -74,7 +80,8 @@ void CampaignState::on_hello(const WorkerId& worker, const Hello& hello, Monoton
   out.send(worker, welcome_);
 }
 
-void CampaignState::on_heartbeat(const WorkerId& worker, const Heartbeat& heartbeat, MonotonicTime now, Outbox& out) {
+void CampaignState::on_heartbeat(const WorkerId& worker, const Heartbeat& heartbeat, MonotonicTime now,
+                                 Outbox& out) {
   for (const std::uint64_t id : heartbeat.leases) {
     const auto lease = leases_.find(id);
     if (lease != leases_.end() && lease->second.worker == worker) lease->second.last_mentioned = now;
@@ -92,7 +99,8 @@ void CampaignState::on_credit(const WorkerId& worker, const Credit& credit, Mono
 }
 
 bool CampaignState::grant(const WorkerId& worker, WorkerState& state, MonotonicTime now, Outbox& out) {
-  const auto cell = std::find_if(cells_.begin(), cells_.end(), [](const CellState& c) { return !c.pending.empty(); });
+  const auto cell =
+      std::find_if(cells_.begin(), cells_.end(), [](const CellState& c) { return !c.pending.empty(); });
   if (cell == cells_.end()) return false;
   const double prefetch_ns = std::chrono::duration<double, std::nano>(options_.prefetch_below).count();
   if (state.idle == 0 && !(cell->timed > 0 && cell->mean_trial_ns < prefetch_ns)) return false;
@@ -110,15 +118,16 @@ bool CampaignState::grant(const WorkerId& worker, WorkerState& state, MonotonicT
   return true;
 }
 
-// Guided self-scheduling (Polychronopoulos and Kuck 1987, with half of the share): a worker gets half of its fair
-// part of what is left, so that leases shrink towards the end, but no more than `target_lease` of work.
+// Guided self-scheduling (Polychronopoulos and Kuck 1987, with half of the share): a worker gets half of its
+// fair part of what is left, so that leases shrink towards the end, but no more than `target_lease` of work.
 std::uint64_t CampaignState::lease_size(const WorkerState& worker, const CellState& cell) const {
   const std::uint64_t least = std::max<std::uint64_t>(worker.idle, 1);
   if (cell.timed == 0) return least;  // one trial a thread tells how long they take
   std::uint64_t threads = 0;
   for (const auto& [id, other] : workers_) threads += other.hello.jobs;
   const double jobs = worker.hello.jobs;
-  const double guided = static_cast<double>(pending_) * jobs / (2.0 * static_cast<double>(std::max<std::uint64_t>(threads, 1)));
+  const double guided =
+      static_cast<double>(pending_) * jobs / (2.0 * static_cast<double>(std::max<std::uint64_t>(threads, 1)));
   const double target = std::chrono::duration<double, std::nano>(options_.target_lease).count() * jobs /
                         std::max(cell.mean_trial_ns, 1.0);
   const double size = std::min({guided, target, static_cast<double>(options_.largest_lease)});
@@ -141,7 +150,8 @@ void CampaignState::on_results(const WorkerId& worker, Results results, Monotoni
   request.pid = hello.pid;
   if (results.campaign != welcome_.campaign) {
     ++counters_.foreign;
-    out.send(worker, Ack{results.sequence});  // of a campaign that this coordinator knows nothing of: let it go
+    out.send(worker,
+             Ack{results.sequence});  // of a campaign that this coordinator knows nothing of: let it go
     return;
   }
   request.rows.reserve(results.rows.size());
@@ -215,7 +225,8 @@ void CampaignState::reclaim(std::uint64_t id) {
   ++counters_.reclaimed;
   for (const auto& [first, last] : lease->second.missing.ranges()) {
     for (std::uint64_t index = first; index < last; ++index) {
-      if (cell.stored.contains(index) || cell.received.contains(index) || cell.pending.contains(index)) continue;
+      if (cell.stored.contains(index) || cell.received.contains(index) || cell.pending.contains(index))
+        continue;
       cell.pending.insert(index);
       ++cell.retries[index];
       ++pending_;

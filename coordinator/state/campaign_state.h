@@ -1,16 +1,16 @@
 // Who computes what: all decisions of the coordinator, without socket, database, thread or clock.
 //
-// Events come in as calls that carry the time; what is to be done goes out through an Outbox. A plan is cells with
-// repetitions. Each trial of it is in one of these states:
+// Events come in as calls that carry the time; what is to be done goes out through an Outbox. A plan is cells
+// with repetitions. Each trial of it is in one of these states:
 //
 //   pending -> leased to one worker -> received (in a batch not yet committed) -> stored
 //
 // A lease that its worker has not mentioned (in HEARTBEAT or RESULTS) for `lease_timeout` is taken back: that
-// covers a dead worker as well as a LEASE that was lost on the way. Results are welcome from whoever brings them:
-// the store drops a row that it has, so that lease expiry can only cost work and never a result.
+// covers a dead worker as well as a LEASE that was lost on the way. Results are welcome from whoever brings
+// them: the store drops a row that it has, so that lease expiry can only cost work and never a result.
 //
-// Invariants (tests/unit/state): what was acknowledged is stored; a trial is stored once; while a worker lives, the
-// run ends.
+// Invariants (tests/unit/state): what was acknowledged is stored; a trial is stored once; while a worker
+// lives, the run ends.
 #pragma once
 
 #include <chrono>
@@ -25,8 +25,8 @@
 
 namespace fatmc {
 
-using WorkerId = std::string;                      ///< the worker's incarnation, also its routing id
-using MonotonicTime = std::chrono::nanoseconds;    ///< since any fixed moment
+using WorkerId = std::string;                    ///< the worker's incarnation, also its routing id
+using MonotonicTime = std::chrono::nanoseconds;  ///< since any fixed moment
 
 struct PlanCell {
   std::uint64_t repetitions = 0;
@@ -37,14 +37,15 @@ struct StateOptions {
   std::chrono::milliseconds heartbeat{500};
   /// Four heartbeats: one may be late and one lost before work is done twice.
   std::chrono::milliseconds lease_timeout{2000};
-  /// A lease should keep a worker busy this long: many times the round trip (below 1 ms), short against a run.
+  /// A lease should keep a worker busy this long: many times the round trip (below 1 ms), short against a
+  /// run.
   std::chrono::milliseconds target_lease{250};
-  /// Trials shorter than this are leased ahead, before a thread is idle; of longer ones a round trip is nothing,
-  /// and a queued trial would wait in one worker while another has none.
+  /// Trials shorter than this are leased ahead, before a thread is idle; of longer ones a round trip is
+  /// nothing, and a queued trial would wait in one worker while another has none.
   std::chrono::milliseconds prefetch_below{50};
   std::uint64_t largest_lease = 4096;
-  /// Lease ids count from here. A restarted coordinator should begin beyond those of the one before, so that a
-  /// worker that lives on cannot confuse their leases.
+  /// Lease ids count from here. A restarted coordinator should begin beyond those of the one before, so that
+  /// a worker that lives on cannot confuse their leases.
   std::uint64_t first_lease = 1;
 };
 

@@ -15,7 +15,8 @@ class IndexRanges {
   /// Removes [first, last), whatever of it is in.
   void erase(std::uint64_t first, std::uint64_t last);
   void erase(std::uint64_t index) { erase(index, index + 1); }
-  /// Removes and returns the first `count` indices that are neighbours, fewer when the first range is shorter.
+  /// Removes and returns the first `count` indices that are neighbours, fewer when the first range is
+  /// shorter.
   std::pair<std::uint64_t, std::uint64_t> take(std::uint64_t count);
 
   [[nodiscard]] bool contains(std::uint64_t index) const;

@@ -89,7 +89,8 @@ void CampaignReader::visit(std::uint32_t cell, const std::function<void(const Tr
   const std::string range = " BETWEEN " + std::to_string(trial_id({cell, 0})) + " AND " +
                             std::to_string(trial_id({cell + 1, 0}) - 1) + " ORDER BY ";
   SQLite::Statement trials(db, "SELECT id, repetition, outcome, detail FROM trial WHERE id" + range + "id");
-  SQLite::Statement metrics(db, "SELECT trial, name, value FROM metric WHERE trial" + range + "trial, position");
+  SQLite::Statement metrics(db,
+                            "SELECT trial, name, value FROM metric WHERE trial" + range + "trial, position");
   SQLite::Statement arrays(db, "SELECT trial, name, data FROM array WHERE trial" + range + "trial, position");
   bool more_metrics = metrics.executeStep();
   bool more_arrays = arrays.executeStep();
@@ -112,7 +113,9 @@ void CampaignReader::visit(std::uint32_t cell, const std::function<void(const Tr
 }
 
 RowSource CampaignReader::rows() const {
-  return [this](std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor) { visit(cell, visitor); };
+  return [this](std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor) {
+    visit(cell, visitor);
+  };
 }
 
 std::string CampaignReader::digest() const {

@@ -76,8 +76,9 @@ Status check_same(const std::string& path, const StoredCampaign& stored, const C
                   const std::string& build) {
   const std::string remedy = "; repeat what it was made with, or name another file by --db";
   if (stored.spec.seed != spec.seed) {
-    return fail(Error{path, 0, "seed", "the database was made with seed " + std::to_string(stored.spec.seed) +
-                                           ", this run has " + std::to_string(spec.seed) + remedy});
+    return fail(Error{path, 0, "seed",
+                      "the database was made with seed " + std::to_string(stored.spec.seed) +
+                          ", this run has " + std::to_string(spec.seed) + remedy});
   }
   if (stored.identity != spec.identity()) {
     if (auto difference = first_difference(spec.tree, stored.spec.tree)) {
@@ -87,10 +88,11 @@ Status check_same(const std::string& path, const StoredCampaign& stored, const C
     return fail(Error{path, 0, "", "the database was made with another spec" + remedy});
   }
   if (stored.build != build) {
-    return fail(Error{path, 0, "build", "the database was made by build " + stored.build.substr(0, 12) +
-                                            ", this program is " + build.substr(0, 12) +
-                                            ", whose numbers may differ; finish it with that build, or name "
-                                            "another file by --db"});
+    return fail(Error{path, 0, "build",
+                      "the database was made by build " + stored.build.substr(0, 12) + ", this program is " +
+                          build.substr(0, 12) +
+                          ", whose numbers may differ; finish it with that build, or name "
+                          "another file by --db"});
   }
   return {};
 }
@@ -115,11 +117,14 @@ struct CampaignStore::Parts {
   std::map<std::string, std::int64_t, std::less<>> names;
 
   Parts(WriterLock held, const std::string& file)
-      : lock(std::move(held)), path(file), db(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE | SQLite::OPEN_NOMUTEX, kBusyMs) {}
+      : lock(std::move(held)),
+        path(file),
+        db(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE | SQLite::OPEN_NOMUTEX, kBusyMs) {}
 
   // Leaves a single file that may be copied, unless a reader is in it at this moment.
   ~Parts() {
-    for (auto* statement : {&insert_trial, &find_hash, &insert_metric, &insert_array, &insert_name}) statement->reset();
+    for (auto* statement : {&insert_trial, &find_hash, &insert_metric, &insert_array, &insert_name})
+      statement->reset();
     db.tryExec("PRAGMA journal_mode = DELETE");
   }
 
@@ -208,8 +213,11 @@ Result<CampaignStore> CampaignStore::open(const std::string& path, const Campaig
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   std::error_code error;
   if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  if (error) return fail(Error{path, 0, "", "its folder cannot be made (" + error.message() + "), name another by --db"});
-  if (std::filesystem::is_directory(path)) return fail(Error{path, 0, "", "is a folder, name a file by --db"});
+  if (error)
+    return fail(
+        Error{path, 0, "", "its folder cannot be made (" + error.message() + "), name another by --db"});
+  if (std::filesystem::is_directory(path))
+    return fail(Error{path, 0, "", "is a folder, name a file by --db"});
   const bool exists = !is_blank(path);
   if (exists) {
     // Read before anything is written, so that a file of another kind stays as it is.

@@ -1,9 +1,9 @@
 // The database of one campaign: its only writer, and readers.
 //
-// WAL with synchronous=FULL: a commit is one append and one fsync, so that an acknowledged row outlives kill -9 and
-// a power cut, and readers (`fatmc status`, `fatmc query`) never wait for the writer nor it for them. A rollback
-// journal would sync twice or three times a commit and lock readers out meanwhile. The price: FILE-wal and FILE-shm
-// stand beside FILE while it is open, and the file must be on a local disk.
+// WAL with synchronous=FULL: a commit is one append and one fsync, so that an acknowledged row outlives kill
+// -9 and a power cut, and readers (`fatmc status`, `fatmc query`) never wait for the writer nor it for them.
+// A rollback journal would sync twice or three times a commit and lock readers out meanwhile. The price:
+// FILE-wal and FILE-shm stand beside FILE while it is open, and the file must be on a local disk.
 #pragma once
 
 #include <cstdint>
@@ -26,9 +26,10 @@ namespace fatmc {
 /// Writes a campaign's rows. I/O errors throw SQLite::Exception.
 class CampaignStore {
  public:
-  /// Creates the file (and its folder), or opens one of the same spec, seed and build: it is resumed, and extended
-  /// where the spec has more repetitions. An Error says what differs and what to do.
-  static Result<CampaignStore> open(const std::string& path, const CampaignSpec& spec, const std::string& build);
+  /// Creates the file (and its folder), or opens one of the same spec, seed and build: it is resumed, and
+  /// extended where the spec has more repetitions. An Error says what differs and what to do.
+  static Result<CampaignStore> open(const std::string& path, const CampaignSpec& spec,
+                                    const std::string& build);
 
   CampaignStore(CampaignStore&&) noexcept;
   ~CampaignStore();
@@ -36,8 +37,8 @@ class CampaignStore {
   /// Cells of the spec with what is stored of them.
   [[nodiscard]] std::vector<PlanCell> plan(const CampaignSpec& spec);
 
-  /// One transaction, on disk when it returns. A row whose trial is stored already is left out: `duplicate` when
-  /// its content hash is the same, else `conflict`.
+  /// One transaction, on disk when it returns. A row whose trial is stored already is left out: `duplicate`
+  /// when its content hash is the same, else `conflict`.
   std::vector<StoreReport> commit(std::span<const StoreRequest> requests);
 
  private:

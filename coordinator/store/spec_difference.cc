@@ -15,7 +15,8 @@ std::optional<Error> differ_table(const Tree& now, const Tree& then, const std::
     if (depth == 2 && path.starts_with("cell.") && name == "repetitions") continue;
     const std::string key = path.empty() ? name : path + "." + name;
     const Tree* before = then.find(name);
-    if (before == nullptr) return Error{entry.file, entry.line, key, "is new, the database was made without it"};
+    if (before == nullptr)
+      return Error{entry.file, entry.line, key, "is new, the database was made without it"};
     if (auto found = differ(entry, *before, key, depth + 1)) return found;
   }
   for (const auto& [name, entry] : then.table()->entries) {
@@ -29,7 +30,8 @@ std::optional<Error> differ_table(const Tree& now, const Tree& then, const std::
 
 std::optional<Error> differ(const Tree& now, const Tree& then, const std::string& path, int depth) {
   if (now.table() != nullptr && then.table() != nullptr) return differ_table(now, then, path, depth);
-  if (now.array() != nullptr && then.array() != nullptr && now.array()->items.size() == then.array()->items.size()) {
+  if (now.array() != nullptr && then.array() != nullptr &&
+      now.array()->items.size() == then.array()->items.size()) {
     for (std::size_t i = 0; i < now.array()->items.size(); ++i) {
       const std::string key = path + "." + std::to_string(i + 1);
       if (auto found = differ(now.array()->items[i], then.array()->items[i], key, depth + 1)) return found;
@@ -37,7 +39,8 @@ std::optional<Error> differ(const Tree& now, const Tree& then, const std::string
     return std::nullopt;
   }
   if (canonical_text(now) == canonical_text(then)) return std::nullopt;
-  return Error{now.file, now.line, path, "is " + text_of(now) + ", the database was made with " + text_of(then)};
+  return Error{now.file, now.line, path,
+               "is " + text_of(now) + ", the database was made with " + text_of(then)};
 }
 
 }  // namespace

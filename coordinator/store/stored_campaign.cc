@@ -10,8 +10,8 @@ namespace fatmc {
 namespace {
 
 Result<CampaignSpec> decode_spec(SQLite::Database& db, const SQLite::Column& blob, const std::string& path) {
-  const Result<Message> frame =
-      decode(std::string_view(static_cast<const char*>(blob.getBlob()), static_cast<std::size_t>(blob.getBytes())));
+  const Result<Message> frame = decode(
+      std::string_view(static_cast<const char*>(blob.getBlob()), static_cast<std::size_t>(blob.getBytes())));
   if (!frame || !std::holds_alternative<Welcome>(*frame)) {
     return fail(Error{path, 0, "campaign.spec", "cannot be read, the file is damaged"});
   }
@@ -36,8 +36,9 @@ Result<StoredCampaign> read_campaign(SQLite::Database& db, const std::string& pa
     }
     const int version = db.execAndGet("PRAGMA user_version").getInt();
     if (version != kSchemaVersion) {
-      return fail(Error{path, 0, "", "has schema " + std::to_string(version) + ", this program reads " +
-                                         std::to_string(kSchemaVersion) + "; use the program that made it"});
+      return fail(Error{path, 0, "",
+                        "has schema " + std::to_string(version) + ", this program reads " +
+                            std::to_string(kSchemaVersion) + "; use the program that made it"});
     }
     SQLite::Statement row(db, "SELECT spec, identity, build FROM campaign");
     if (!row.executeStep()) return fail(Error{path, 0, "campaign", "is empty, the file is damaged"});

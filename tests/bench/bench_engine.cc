@@ -34,7 +34,9 @@ CampaignSpec empty_trials(std::int64_t repetitions) {
 double processor_seconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
@@ -70,7 +72,12 @@ void AckedTrials(benchmark::State& bench) {
   bench.counters["acked_per_s"] = trials / wall;
   bench.counters["coordinator_us_per_trial"] = 1e6 * processor / trials;
 }
-BENCHMARK(AckedTrials)->Args({100'000, 1})->Args({100'000, 2})->UseManualTime()->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(AckedTrials)
+    ->Args({100'000, 1})
+    ->Args({100'000, 2})
+    ->UseManualTime()
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace fatmc

@@ -25,7 +25,8 @@ CampaignSpec two_trials() {
 
 class Peer {
  public:
-  Peer(zmq::context_t& context, const std::string& endpoint, const std::string& id) : socket_(context, ZMQ_DEALER) {
+  Peer(zmq::context_t& context, const std::string& endpoint, const std::string& id)
+      : socket_(context, ZMQ_DEALER) {
     socket_.set(zmq::sockopt::routing_id, id);
     socket_.set(zmq::sockopt::linger, 2000);
     socket_.set(zmq::sockopt::rcvtimeo, 20'000);
@@ -34,7 +35,8 @@ class Peer {
   void send(const Message& message) { raw({encode(message)}); }
   void raw(const std::vector<std::string>& frames) {
     for (std::size_t i = 0; i < frames.size(); ++i) {
-      socket_.send(zmq::buffer(frames[i]), i + 1 < frames.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
+      socket_.send(zmq::buffer(frames[i]),
+                   i + 1 < frames.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
     }
   }
   /// The next message of type T; others are passed over.

@@ -16,7 +16,8 @@ Tree leaf(auto value, int line) { return Tree{value, "spec.toml", line}; }
 Tree example_tree() {
   Tree inner{Tree::Table{}, "model.toml", 1};
   inner.set("mass_kg", Tree{5.25, "model.toml", 2});
-  Tree list{Tree::Array{{leaf(std::int64_t{-3}, 4), leaf(true, 5), leaf(std::string("é\xff"), 6)}}, "spec.toml", 4};
+  Tree list{Tree::Array{{leaf(std::int64_t{-3}, 4), leaf(true, 5), leaf(std::string("é\xff"), 6)}},
+            "spec.toml", 4};
   Tree tree{Tree::Table{}, "spec.toml", 1};
   tree.set("model", inner);
   tree.set("list", list);
@@ -28,7 +29,8 @@ ComputedRow example_row() {
   out.row.key = {2, 1'000'000'007};
   out.row.outcome = "diverged";
   out.row.detail = "attitude \xfe beyond the model";
-  out.row.metrics = {{"snr", 20.5}, {"nothing", std::numeric_limits<double>::quiet_NaN()}, {"negative zero", -0.0}};
+  out.row.metrics = {
+      {"snr", 20.5}, {"nothing", std::numeric_limits<double>::quiet_NaN()}, {"negative zero", -0.0}};
   out.row.arrays = {{"re", {1.0, 2.0, std::numeric_limits<double>::infinity()}}, {"empty", {}}};
   out.hash = content_hash(out.row);
   out.started_us = 1'700'000'000'000'000;
@@ -54,7 +56,8 @@ TEST(Wire, EveryMessageComesBackAsItWasSent) {
     const Result<Message> back = decode(encode(message));
     ASSERT_TRUE(back) << message_name(message) << ": " << back.error().text();
     ASSERT_EQ(back->index(), message.index());
-    if (const auto* results = std::get_if<Results>(&message)) {  // NaN is not equal to itself: compare by hash
+    if (const auto* results =
+            std::get_if<Results>(&message)) {  // NaN is not equal to itself: compare by hash
       const auto& other = std::get<Results>(*back);
       EXPECT_EQ(other.sequence, results->sequence);
       ASSERT_EQ(other.rows.size(), results->rows.size());
@@ -89,7 +92,8 @@ TEST(Wire, AnEmptyLeaseOrOneThatRunsBackwardsIsRefused) {
 TEST(Wire, AHelloWithoutAUsableIncarnationOrJobsIsRefused) {
   EXPECT_FALSE(decode(encode(Hello{kProtocolVersion, "build", "me", "host", 1, 1})));
   EXPECT_FALSE(decode(encode(Hello{kProtocolVersion, "build", std::string(32, 'a'), "host", 1, 0})));
-  EXPECT_FALSE(decode(encode(Hello{kProtocolVersion, "build", std::string(32, 'a'), std::string(9999, 'h'), 1, 1})));
+  EXPECT_FALSE(
+      decode(encode(Hello{kProtocolVersion, "build", std::string(32, 'a'), std::string(9999, 'h'), 1, 1})));
 }
 
 TEST(Wire, MoreRowsThanAMessageMayHoldAreRefused) {
@@ -113,11 +117,18 @@ TEST(Wire, DamagedFramesAreErrorsOrOtherMessagesButNeverCrashes) {
     for (int i = 0; i < 3000; ++i) {
       std::string damaged = frame;
       switch (random() % 4) {
-        case 0: damaged.resize(random() % (frame.size() + 1)); break;
-        case 1: damaged.insert(random() % (frame.size() + 1), 1 + random() % 8, static_cast<char>(random())); break;
-        case 2: damaged.erase(random() % frame.size(), 1 + random() % 8); break;
+        case 0:
+          damaged.resize(random() % (frame.size() + 1));
+          break;
+        case 1:
+          damaged.insert(random() % (frame.size() + 1), 1 + random() % 8, static_cast<char>(random()));
+          break;
+        case 2:
+          damaged.erase(random() % frame.size(), 1 + random() % 8);
+          break;
         default:
-          for (std::uint64_t n = 1 + random() % 4; n > 0; --n) damaged[random() % frame.size()] = static_cast<char>(random());
+          for (std::uint64_t n = 1 + random() % 4; n > 0; --n)
+            damaged[random() % frame.size()] = static_cast<char>(random());
       }
       const Result<Message> back = decode(damaged);
       if (!back) {
@@ -141,13 +152,14 @@ TEST(Wire, RandomBytesAreNeverACrash) {
 }
 
 TEST(Endpoint, OnlyTheLoopbackAndIpcAreAllowedWithoutKeys) {
-  for (const char* good : {"tcp://127.0.0.1:5555", "tcp://127.0.0.1:*", "tcp://127.9.8.7:1", "tcp://localhost:80",
-                           "tcp://[::1]:5555", "ipc:///tmp/socket"}) {
+  for (const char* good : {"tcp://127.0.0.1:5555", "tcp://127.0.0.1:*", "tcp://127.9.8.7:1",
+                           "tcp://localhost:80", "tcp://[::1]:5555", "ipc:///tmp/socket"}) {
     EXPECT_TRUE(check_plain_endpoint(good, "--bind")) << good;
   }
-  for (const char* bad : {"tcp://0.0.0.0:5555", "tcp://*:5555", "tcp://192.168.1.2:5555", "tcp://127.0.0.1.example.org:1",
-                          "tcp://127.0.0.1", "tcp://127.0.0.1:port", "tcp://127.0.0.1:70000", "tcp://127.0.0.999:1",
-                          "tcp://localhost.example.org:1", "udp://127.0.0.1:1", "ipc://", ""}) {
+  for (const char* bad :
+       {"tcp://0.0.0.0:5555", "tcp://*:5555", "tcp://192.168.1.2:5555", "tcp://127.0.0.1.example.org:1",
+        "tcp://127.0.0.1", "tcp://127.0.0.1:port", "tcp://127.0.0.1:70000", "tcp://127.0.0.999:1",
+        "tcp://localhost.example.org:1", "udp://127.0.0.1:1", "ipc://", ""}) {
     EXPECT_FALSE(check_plain_endpoint(bad, "--bind")) << bad;
   }
 }

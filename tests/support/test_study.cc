@@ -1,4 +1,5 @@
-// A study for tests of the engine: cheap, deterministic, with every kind of outcome. No shipped program has it.
+// A study for tests of the engine: cheap, deterministic, with every kind of outcome. No shipped program has
+// it.
 //
 //   [[cell]]
 //   name = "a"
@@ -76,8 +77,8 @@ Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& 
       ++count;
     });
     const auto n = static_cast<double>(count);
-    out.push_back({"test", spec.cells[cell].name, "mean of a standard normal", "1", 0.0, sum / n, -2.0 / std::sqrt(n),
-                   2.0 / std::sqrt(n), count, "shape", ""});
+    out.push_back({"test", spec.cells[cell].name, "mean of a standard normal", "1", 0.0, sum / n,
+                   -2.0 / std::sqrt(n), 2.0 / std::sqrt(n), count, "shape", ""});
   }
   return out;
 }

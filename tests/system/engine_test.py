@@ -16,7 +16,7 @@ FATMC = os.path.join(BIN, "fatmc")
 WORKER = os.path.join(BIN, "fatmc-worker")
 LIMIT_S = 60
 
-# About 6 ms a trial, of different lengths in the two cells, with failures among them.
+# Trials of about 2.5 and 25 ms, with failures among them: long enough to strike in mid-run.
 SPEC = """
 [campaign]
 study = "engine_test"
@@ -33,7 +33,7 @@ array = 7
 [[cell]]
 name = "long"
 repetitions = 60
-work = 4000000
+work = 10000000
 array = 3
 """
 
@@ -212,7 +212,7 @@ class Engine(unittest.TestCase):
     def test_wrong_input_gets_one_line_and_leaves_nothing_behind(self):
         self.write("key.toml", SPEC.replace("array = 7", "aray = 7"))
         self.refused("key.toml:12: cell.aray: is not a known key", "run", "key.toml")
-        self.write("range.toml", SPEC.replace("work = 4000000", "work = -4"))
+        self.write("range.toml", SPEC.replace("work = 10000000", "work = -4"))
         self.refused("range.toml:17: cell.work: -4 is out of range", "run", "range.toml")
         self.write("study.toml", SPEC.replace("engine_test", "nothing"))
         self.refused("study.toml:3: campaign.study: \"nothing\" is not known", "run", "study.toml")

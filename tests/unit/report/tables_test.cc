@@ -19,8 +19,8 @@ TEST(Tables, JsonHasTheKeysOfTheContractAndNullForNaN) {
   ASSERT_EQ(json.size(), 2U);
   std::vector<std::string> keys;
   for (const auto& [key, value] : json[0].items()) keys.push_back(key);
-  EXPECT_EQ(keys, (std::vector<std::string>{"table", "row", "quantity", "unit", "published", "value", "low", "high", "n",
-                                            "verdict", "why"}));
+  EXPECT_EQ(keys, (std::vector<std::string>{"table", "row", "quantity", "unit", "published", "value", "low",
+                                            "high", "n", "verdict", "why"}));
   EXPECT_EQ(json[0]["value"], 95.25);
   EXPECT_TRUE(json[1]["published"].is_null());
   EXPECT_EQ(json[1]["n"], 50);

@@ -222,7 +222,8 @@ TEST_F(CampaignStateTest, LeasesShrinkTowardsTheEnd) {
     newest = lease.lease;
     last_size = lease.last - lease.first;
     sizes.push_back(last_size);
-    for (std::uint64_t i = lease.first; i < lease.last; ++i) deliver(state, kOne, ++sequence, {i}, milliseconds(1));
+    for (std::uint64_t i = lease.first; i < lease.last; ++i)
+      deliver(state, kOne, ++sequence, {i}, milliseconds(1));
     commit_all(state);
   }
   EXPECT_EQ(sizes.front(), 1U) << "the first tells how long a trial takes";

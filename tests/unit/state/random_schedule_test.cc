@@ -1,5 +1,5 @@
-// Random schedules: messages are lost, repeated and reordered, workers and the coordinator crash. Whatever happens,
-// what was acknowledged is stored, nothing is stored twice, and once the trouble ends the run ends.
+// Random schedules: messages are lost, repeated and reordered, workers and the coordinator crash. Whatever
+// happens, what was acknowledged is stored, nothing is stored twice, and once the trouble ends the run ends.
 #include <gtest/gtest.h>
 
 #include <deque>

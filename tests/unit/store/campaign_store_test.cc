@@ -89,7 +89,8 @@ TEST_F(Store, RowsComeBackBitForBitInTheOrderOfTheirKeys) {
 
 TEST_F(Store, VisitsMayNest) {
   auto store = CampaignStore::open(path_, example_spec(), "build");
-  store->commit(std::vector{request({example_row(0, 0, 1.0), example_row(0, 1, 2.0), example_row(1, 0, 3.0)})});
+  store->commit(
+      std::vector{request({example_row(0, 0, 1.0), example_row(0, 1, 2.0), example_row(1, 0, 3.0)})});
   const auto reader = CampaignReader::open(path_);
   int pairs = 0;
   reader->visit(0, [&](const TrialRow&) { reader->visit(1, [&](const TrialRow&) { ++pairs; }); });
@@ -132,7 +133,8 @@ TEST_F(Store, TheDigestKnowsResultsAndNeitherOrderNorProvenance) {
 TEST_F(Store, ReopeningKnowsWhatIsStoredAndExtends) {
   {
     auto store = CampaignStore::open(path_, example_spec(), "build");
-    store->commit(std::vector{request({example_row(0, 0, 1.0), example_row(0, 1, 1.0), example_row(0, 5, 1.0)})});
+    store->commit(
+        std::vector{request({example_row(0, 0, 1.0), example_row(0, 1, 1.0), example_row(0, 5, 1.0)})});
   }
   const CampaignSpec more = example_spec(1, 20);
   auto store = CampaignStore::open(path_, more, "build");
@@ -151,7 +153,8 @@ TEST_F(Store, AnotherSeedSpecOrBuildIsRefusedAndSaysWhatDiffers) {
     return store ? std::string("accepted") : store.error().text();
   };
   EXPECT_NE(refusal(example_spec(2), "build").find("made with seed 1, this run has 2"), std::string::npos);
-  EXPECT_EQ(refusal(example_spec(1, 10, 0.5), "build").find("spec.toml:3: amplitude: is 0.5, the database was made with 0.25"),
+  EXPECT_EQ(refusal(example_spec(1, 10, 0.5), "build")
+                .find("spec.toml:3: amplitude: is 0.5, the database was made with 0.25"),
             0U);
   EXPECT_NE(refusal(example_spec(), "another").find("build"), std::string::npos);
   EXPECT_EQ(refusal(example_spec(), "build"), "accepted");
@@ -200,8 +203,10 @@ TEST(SpecDifference, NamesNewAndMissingKeysAndIgnoresRepetitions) {
   EXPECT_FALSE(first_difference(base, example_tree(1, 99)));
   Tree more = base;
   more.set("gain", Tree{0.1, "spec.toml", 12});
-  EXPECT_EQ(first_difference(more, base)->text(), "spec.toml:12: gain: is new, the database was made without it");
-  EXPECT_EQ(first_difference(base, more)->text(), "spec.toml:1: gain: is missing, the database was made with 0.1");
+  EXPECT_EQ(first_difference(more, base)->text(),
+            "spec.toml:12: gain: is new, the database was made without it");
+  EXPECT_EQ(first_difference(base, more)->text(),
+            "spec.toml:1: gain: is missing, the database was made with 0.1");
 }
 
 }  // namespace
