@@ -5,8 +5,8 @@
 namespace fatmc::fit {
 namespace {
 
-// Eight digits: the spiral pole, a small difference of larger terms, then moves by less than 1e-5 of itself.
-constexpr int kDigits = 8;
+// The spiral pole, a small difference of larger terms, then moves by about 1e-5 of itself.
+constexpr int kDigits = 6;
 
 class Writer {
  public:

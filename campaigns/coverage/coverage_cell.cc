@@ -11,6 +11,7 @@ namespace {
 Status apply_overrides(const Tree& tree, Experiment& experiment) {
   Decoder table(tree, "cell");
   for (const char* key : {"name", "repetitions"}) table.skip(key);
+  table.boolean("compare", true);  // read by the summary
   FlightSetup& flight = experiment.flight;
   if (table.has("plant")) {
     flight.plant = table.choice("plant", {"nonlinear", "linear"}) == "linear" ? FlightSetup::Plant::linear

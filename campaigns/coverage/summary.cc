@@ -208,9 +208,13 @@ Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& 
     rows(index, [&](const TrialRow& row) {
       if (row.outcome == "ok" && q == 0) q = static_cast<int>(metric(row, kDegreesOfFreedom));
     });
-    add_table_5_5(cell, suffix, *published, table_5_5);
+    // A cell that varies the published experiment says so by compare = false.
+    const Tree* compare = spec.cells[index].tree.find("compare");
+    const bool compared = compare == nullptr || compare->value != decltype(compare->value)(false);
+    const std::vector<PublishedFigure> figures = compared ? *published : std::vector<PublishedFigure>{};
+    add_table_5_5(cell, suffix, figures, table_5_5);
     add_figure_5_4(cell, suffix, q, figure_5_4);
-    cell.snr.add_rows(cell.trials, suffix, *published, snr);
+    cell.snr.add_rows(cell.trials, suffix, figures, snr);
   }
   std::vector<TableRow> out = std::move(table_5_5);
   out.insert(out.end(), figure_5_4.begin(), figure_5_4.end());

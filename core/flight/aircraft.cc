@@ -22,7 +22,7 @@ Status check(const Aircraft& a) {
   }
   if (a.ixx_kg_m2 + a.iyy_kg_m2 < a.izz_kg_m2 || a.ixx_kg_m2 + a.izz_kg_m2 < a.iyy_kg_m2 ||
       a.iyy_kg_m2 + a.izz_kg_m2 < a.ixx_kg_m2) {
-    return wrong("mass.ixx_kg_m2", "one moment of inertia exceeds the sum of the others, which no body has");
+    return wrong("mass.izz_kg_m2", "one moment of inertia exceeds the sum of the others, which no body has");
   }
   if (a.validity.alpha_min_rad >= a.validity.alpha_max_rad) {
     return wrong("validity.alpha_min_deg", "is not below alpha_max_deg");
