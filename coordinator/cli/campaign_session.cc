@@ -9,6 +9,7 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "campaigns/registry_summaries.h"
 #include "coordinator/cli/progress_line.h"
