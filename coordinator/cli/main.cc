@@ -20,6 +20,7 @@ int run(int argc, char** argv) {
   Exit exit = Exit::done;
   add_linearize_command(app, exit);
   add_estimate_command(app, exit);
+  add_ssv_command(app, exit);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
