@@ -1,4 +1,4 @@
-// The fit of the FAT's unpublished derivatives: parameters with priors, targets, and a Gauss-Newton solver.
+// The fit of the FAT's unpublished derivatives: parameters with priors, targets, and a solver.
 #pragma once
 
 #include <Eigen/Dense>
@@ -23,6 +23,7 @@ struct Target {
   std::string name;
   double value;
   double tolerance;
+  bool exact = false;  ///< a constraint; the tolerance then is its scale alone
 };
 
 struct Problem {
@@ -37,13 +38,15 @@ struct Fit {
   Aircraft aircraft;
   bool converged = false;
   int iterations = 0;
-  double step = 0.0;         ///< last step in units of the priors' spreads
-  Eigen::VectorXd reached;   ///< model values
+  double step = 0.0;        ///< last step in units of the priors' spreads
+  double violation = 0.0;   ///< largest residual of the exact targets
+  Eigen::VectorXd reached;  ///< model values
 };
 
-/// Minimises sum ((model - value)/tolerance)^2 + sum ((parameter - prior)/spread)^2 by Levenberg-Marquardt with
-/// central differences. The tolerances of targets are so small that they hold like constraints; the priors choose
-/// among what is left.
+/// Minimises sum ((model - value)/tolerance)^2 over the other targets + sum ((parameter - prior)/spread)^2
+/// subject to model = value for the exact targets: Levenberg-Marquardt with the constraints as penalties
+/// comes near, Newton's method on the Lagrangian ends it. The priors choose among what the targets leave
+/// free.
 Fit solve(const Problem& problem);
 
 }  // namespace fatmc::fit

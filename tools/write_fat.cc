@@ -5,8 +5,8 @@
 namespace fatmc::fit {
 namespace {
 
-// Eight digits: the spiral pole, a small difference of larger terms, then moves by less than 1e-5 of itself.
-constexpr int kDigits = 8;
+// The spiral pole, a small difference of larger terms, then moves by about 1e-5 of itself.
+constexpr int kDigits = 6;
 
 class Writer {
  public:
@@ -61,8 +61,12 @@ void actuator(Writer& w, const Actuator& a) {
 
 void propulsion(Writer& w, const Propulsion& p) {
   w.section("propulsion");
-  w.comment("Electric motor, one pusher propeller; thrust along x. Chosen: diameter, C_T at rest and its curvature, C_Q, torque slope: a 0.5 m");
-  w.comment("propeller's usual curves. Fitted: the shaft's inertia (pole -2.174 1/s), the slope of thrust with speed, its offset.");
+  w.comment(
+      "Electric motor, one pusher propeller; thrust along x. Chosen: diameter, C_T at rest and its "
+      "curvature, C_Q, torque slope: a 0.5 m");
+  w.comment(
+      "propeller's usual curves. Fitted: the shaft's inertia (pole -2.174 1/s), the slope of thrust with "
+      "speed, its offset.");
   w.real("esc_time_constant_s", p.esc_time_constant_s, "pole -56.367 1/s of Table A-5");
   w.real("inertia_kg_m2", p.inertia_kg_m2, "motor and propeller about the shaft");
   w.real("diameter_m", p.diameter_m);
@@ -88,7 +92,9 @@ void validity(Writer& w, const Validity& v) {
 
 void imus(Writer& w) {
   w.section("imu.tactical");
-  w.comment("Tables A-7 and A-8. Signs of the misalignments (a small rotation about an oblique axis) are a choice.");
+  w.comment(
+      "Tables A-7 and A-8. Signs of the misalignments (a small rotation about an oblique axis) are a "
+      "choice.");
   w.line("bias_deg_h", "[6.0, 6.0, 6.0]");
   w.line("scale_error_ppm", "[150.0, 150.0, 150.0]");
   w.line("misalignment_deg", "[0.01, -0.01, -0.01, 0.01, 0.01, -0.01]", "M_xy, M_xz, M_yx, M_yz, M_zx, M_zy");
@@ -96,7 +102,9 @@ void imus(Writer& w) {
   w.line("range_deg_s", "300.0");
   w.line("bits", "32", "A.3 gives 1.4e-7 deg/s; the 2.43e-9 printed in A-8 is this in rad/s");
   w.section("imu.industrial");
-  w.comment("Figures of the ADIS16350's class (T A.5.4 names that unit and prints no values): rounded, from the class of");
+  w.comment(
+      "Figures of the ADIS16350's class (T A.5.4 names that unit and prints no values): rounded, from the "
+      "class of");
   w.comment("its data sheet, not a calibration of any unit.");
   w.line("bias_deg_h", "[54.0, 54.0, 54.0]", "0.015 deg/s");
   w.line("scale_error_ppm", "[2000.0, 2000.0, 2000.0]");
@@ -110,11 +118,18 @@ void imus(Writer& w) {
 
 std::string fat_toml(const Aircraft& a) {
   Writer w;
-  w.comment("The Flying Autonomous Testbed, as flown by the campaigns. Written by tools/fit_fat; do not edit, run it again:");
+  w.comment(
+      "The Flying Autonomous Testbed, as flown by the campaigns. Written by tools/fit_fat; do not edit, run "
+      "it again:");
   w.comment("    build/release/bin/fit_fat > campaigns/models/fat.toml");
-  w.comment("Given (Merkl 2018, 3.2 and appendix A): mass, span, trim condition, actuators, full command, tactical IMU.");
-  w.comment("Fitted to the poles of Table A-5 and the zeros of Tables A-1 and A-2, since no derivative is published: moments");
-  w.comment("of inertia, aerodynamics, shaft inertia, stall torque, slope of thrust. Chosen: what is marked so.");
+  w.comment(
+      "Given (Merkl 2018, 3.2 and appendix A): mass, span, trim condition, actuators, full command, tactical "
+      "IMU.");
+  w.comment(
+      "Fitted to the poles of Table A-5 and the zeros of Tables A-1 and A-2, since no derivative is "
+      "published: moments");
+  w.comment(
+      "of inertia, aerodynamics, shaft inertia, stall torque, slope of thrust. Chosen: what is marked so.");
   w.comment("Equations, frames and signs: core/flight/aircraft.h.");
   w.line("kind", "\"aircraft\"");
   w.line("name", "\"" + a.name + "\"");
@@ -129,7 +144,8 @@ std::string fat_toml(const Aircraft& a) {
   w.real("span_m", a.span_m, "given");
   w.real("chord_m", a.chord_m, "area over span");
   w.section("trim");
-  w.real("speed_m_s", a.speed_m_s, "given, as the altitude; level flight, no deflection, alpha 2.5 degrees by choice of axes");
+  w.real("speed_m_s", a.speed_m_s,
+         "given, as the altitude; level flight, no deflection, alpha 2.5 degrees by choice of axes");
   w.real("altitude_m", a.altitude_m, "fixes the density (ISA)");
   w.section("lift");
   longitudinal(w, "C_L", a.lift);

@@ -1,6 +1,7 @@
 // A model file of kind "aircraft": the aircraft and the gyros that may fly on it.
 //
-// docs of every key: campaigns/models/fat.toml. Angles that pilots read are in degrees there, as their names say.
+// docs of every key: campaigns/models/fat.toml. Angles that pilots read are in degrees there, as their names
+// say.
 #pragma once
 
 #include <string_view>
@@ -21,7 +22,8 @@ struct AircraftModel {
   [[nodiscard]] const Imu* imu(std::string_view grade) const;
 };
 
-/// Reads the whole tree of a model file strictly: every key, type and range is checked, unknown keys are refused.
+/// Reads the whole tree of a model file strictly: every key, type and range is checked, unknown keys are
+/// refused.
 Result<AircraftModel> decode_aircraft_model(const Tree& tree);
 
 }  // namespace fatmc

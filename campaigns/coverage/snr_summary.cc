@@ -63,7 +63,7 @@ void SnrSummary::add_rows(std::uint64_t trials, const std::string& suffix,
   const std::size_t lines = runs_.front().size() / inputs_;
   const auto append = [&](std::size_t input, const std::string& quantity, const std::string& unit, Estimate estimate) {
     TableRow row;
-    row.table = "5.2.3";
+    row.table = "Section 5.2.3";
     const std::string name = inputs_ == 3 ? kInputNames[input] : "input " + std::to_string(input + 1);
     row.row = name + suffix;
     row.quantity = quantity;
@@ -73,7 +73,7 @@ void SnrSummary::add_rows(std::uint64_t trials, const std::string& suffix,
     row.high = estimate.high;
     row.n = trials;
     row.published = kNone;
-    if (const PublishedFigure* figure = find_published(published, "5.2.3", name, quantity)) {
+    if (const PublishedFigure* figure = find_published(published, "Section 5.2.3", name, quantity)) {
       row.published = figure->value;
       const bool inside = row.published >= row.low && row.published <= row.high;
       row.verdict = inside ? "match" : "shape";

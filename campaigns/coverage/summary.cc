@@ -188,9 +188,16 @@ void add_figure_5_4(const CellCoverage& cell, const std::string& suffix, int q, 
       row.table = "Fig. 5-4";
       row.row = "x = " + significant(kCdfAbscissae[x], 3) + suffix;
       row.quantity = std::string(region_name(region));
-      row.why = "F(2, " + std::to_string(2 * q) + ") has " + fixed(100.0 * f_cdf_2_2q(kCdfAbscissae[x], q), 1) + " %";
       out.push_back(std::move(row));
     }
+    TableRow law;
+    law.table = "Fig. 5-4";
+    law.row = "x = " + significant(kCdfAbscissae[x], 3) + suffix;
+    law.quantity = "F(2, " + std::to_string(2 * q) + ")";
+    law.unit = "%";
+    law.value = 100.0 * f_cdf_2_2q(kCdfAbscissae[x], q);
+    law.published = law.low = law.high = kNone;
+    out.push_back(std::move(law));
   }
 }
 

@@ -1,5 +1,5 @@
-// What the thesis prints of the FAT's linear dynamics (Merkl 2018, appendix A): data of the fit, and the columns beside
-// which `fatmc linearize` prints its own.
+// What the thesis prints of the FAT's linear dynamics (Merkl 2018, appendix A): data of the fit, and the
+// columns beside which `fatmc linearize` prints its own.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace fatmc::fat_published {
 
-/// Table A-5: poles of the nominal model, discrete at 0.02 s, truncated after the eighth digit; one of each conjugate
-/// pair. s = ln(z)/0.02.
+/// Table A-5: poles of the nominal model, discrete at 0.02 s, truncated after the eighth digit; one of each
+/// conjugate pair. s = ln(z)/0.02.
 struct DiscretePole {
   std::string_view mode;
   double re, im;
@@ -35,11 +35,13 @@ inline std::complex<double> continuous(const DiscretePole& pole) {
 
 /// Tables. Frequencies in Hz; 0: not printed.
 ///
-/// T_theta1 is printed as "0.078 Hz" with 12.9 s, and either reading satisfies 1/0.078 = 12.8: 0.078 Hz = 0.49 rad/s
-/// (the column's unit, and T_theta2 in the next row, 0.486 Hz = 3.05 rad/s = -Z_w, is in Hz beyond doubt), or 0.078 rad/s
-/// (a time constant in the usual sense). The poles of Table A-5 fix it at about 0.27 rad/s with any plausible lift, drag
-/// and thrust, pulled 0.01 rad/s at most by either reading: neither can be met. Hz is the column's unit and the nearer
-/// one (a factor of 1.8 against 3.5), so it is taken; the deviation stays visible in `fatmc linearize`.
+/// T_theta1 is printed as "0.078 Hz" with 12.9 s, and either reading satisfies 1/0.078 = 12.8: 0.078 Hz =
+/// 0.49 rad/s (the column's unit, and T_theta2 in the next row, 0.486 Hz = 3.05 rad/s = -Z_w, is in Hz beyond
+/// doubt), or 0.078 rad/s (a time constant in the usual sense).
+/// With the poles of Table A-5 and these priors the fit settles at 0.27 rad/s; aiming at 0.49 +- 0.02 moves
+/// it to 0.28 only, aiming at 0.078 +- 0.01 to 0.24 at the price of an induced drag 2.4 times too high. So
+/// neither reading is met. Hz, the column's unit, is nearer (a factor of 1.8 against 3.5) and is taken as a
+/// weak target; the deviation stays visible in `fatmc linearize`.
 struct TableEntry {
   std::string_view name;
   double frequency_hz;

@@ -98,8 +98,8 @@ double damping(Complex s) { return -s.real() / std::abs(s); }
 
 /// One row of Tables: what is printed, what the model has, how far apart.
 void print_mode(const fat_published::TableEntry& entry, Complex s, double wanted_hz) {
-  std::printf("  %-15s %9.4f Hz %9.4f Hz %+8.2f %%", std::string(entry.name).c_str(), wanted_hz, frequency_hz(s),
-              100.0 * (frequency_hz(s) / wanted_hz - 1.0));
+  std::printf("  %-15s %9.4f Hz %9.4f Hz %+8.2f %%", std::string(entry.name).c_str(), wanted_hz,
+              frequency_hz(s), 100.0 * (frequency_hz(s) / wanted_hz - 1.0));
   if (entry.damping != 0.0) std::printf("   damping %6.3f %7.4f", entry.damping, damping(s));
   std::printf("\n");
 }
@@ -108,7 +108,9 @@ void print_beside_published(const Linearization& of) {
   namespace published = fat_published;
   const std::vector<Complex> poles = of.continuous.poles();
   const std::vector<Complex> pitch_zeros = of.continuous.zeros(1, 1);
-  const auto pole = [&](std::size_t i) { return nearest(poles, published::continuous(published::kTableA5[i])); };
+  const auto pole = [&](std::size_t i) {
+    return nearest(poles, published::continuous(published::kTableA5[i]));
+  };
   const auto row = [](const auto& table, std::size_t i, Complex s) {
     print_mode(table[i], s, table[i].frequency_hz);
   };
@@ -117,7 +119,8 @@ void print_beside_published(const Linearization& of) {
   row(published::kTableA1, 1, nearest(pitch_zeros, -published::kTheta1));
   row(published::kTableA1, 2, pole(4));
   row(published::kTableA1, 3, nearest(pitch_zeros, -2.0 * kPi * published::kTableA1[3].frequency_hz));
-  std::printf("\nTable A-2, lateral        published         ours  deviation (spiral: printed as a bound, \"<\")\n");
+  std::printf(
+      "\nTable A-2, lateral        published         ours  deviation (spiral: printed as a bound, \"<\")\n");
   row(published::kTableA2, 0, pole(0));
   row(published::kTableA2, 1, pole(5));
   row(published::kTableA2, 2, pole(2));
@@ -131,16 +134,19 @@ void print_beside_published(const Linearization& of) {
   for (const auto& entry : published::kTableA5) {
     const Complex wanted = published::continuous(entry);
     const Complex ours = nearest(poles, wanted);
-    std::printf("  %-17s %13.7f %+12.7fj %13.7f %+12.7fj  %.1e\n", std::string(entry.mode).c_str(), wanted.real(),
-                wanted.imag(), ours.real(), ours.imag(), std::abs(ours - wanted) / std::abs(wanted));
+    std::printf("  %-17s %13.7f %+12.7fj %13.7f %+12.7fj  %.1e\n", std::string(entry.mode).c_str(),
+                wanted.real(), wanted.imag(), ours.real(), ours.imag(),
+                std::abs(ours - wanted) / std::abs(wanted));
   }
   std::printf("  Two actuator pairs are printed; aileron, left and right ruddervator are three here.\n");
 }
 
 void print_text(const Linearization& of) {
-  std::printf("%s, level flight at %s m/s: angle of attack %.4f deg, elevator %.2e rad, throttle %.4f, thrust %.3f N\n",
-              of.aircraft.name.c_str(), shortest(of.aircraft.speed_m_s).c_str(), of.trim.alpha_rad * 180.0 / kPi,
-              of.trim.eta_rad, of.trim.throttle, of.trim.thrust_n);
+  std::printf(
+      "%s, level flight at %s m/s: angle of attack %.4f deg, elevator %.2e rad, throttle %.4f, thrust %.3f "
+      "N\n",
+      of.aircraft.name.c_str(), shortest(of.aircraft.speed_m_s).c_str(), of.trim.alpha_rad * 180.0 / kPi,
+      of.trim.eta_rad, of.trim.throttle, of.trim.thrust_n);
   std::printf("trim: %d iterations, residual %.1e\n\n", of.trim.iterations, of.trim.residual);
   if (of.aircraft.name == "FAT") {
     print_beside_published(of);
@@ -148,7 +154,8 @@ void print_text(const Linearization& of) {
   }
   std::printf("Poles, 1/s\n");
   for (const Complex& s : of.continuous.poles()) {
-    std::printf("  %13.7f %+13.7fj   %9.5f Hz   damping %8.5f\n", s.real(), s.imag(), frequency_hz(s), damping(s));
+    std::printf("  %13.7f %+13.7fj   %9.5f Hz   damping %8.5f\n", s.real(), s.imag(), frequency_hz(s),
+                damping(s));
   }
   std::printf("\nZeros, 1/s\n");
   for (int i = 0; i < 3; ++i) {
@@ -172,7 +179,8 @@ void add_linearize_command(CLI::App& app, Exit& exit) {
   command->add_option("MODEL", *path, "model file, kind = \"aircraft\"")->required();
   command->add_option("--format", *format, "text or json")->check(CLI::IsMember({"text", "json"}));
   command->footer(
-      "Text puts the FAT's poles and zeros beside Tables A-1, A-2 and A-5 of the thesis; json gives the matrices too.\n"
+      "Text puts the FAT's poles and zeros beside Tables A-1, A-2 and A-5 of the thesis; json gives the "
+      "matrices too.\n"
       "Example: fatmc linearize campaigns/models/fat.toml --format json");
   command->callback([path, format, &exit] {
     const Result<Linearization> result = linearization(*path);

@@ -1,4 +1,5 @@
 // fatmc simulate: one flight as a record.
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -7,7 +8,131 @@
 #include "coordinator/cli/command.h"
 #include "coordinator/input/record_file.h"
 #include "coordinator/input/toml_file.h"
-#include "core/flight/flight.h"
+#include "core/base/text.h"
+#include "core/record/column_file.h"
 
 namespace fatmc::cli {
 namespace {
+
+struct Options {
+  std::string model, experiment, record;
+  std::uint64_t seed = 0;
+  std::uint64_t repetition = 0;
+};
+
+struct Flown {
+  AircraftModel model;
+  Experiment experiment;
+  FlightRecord record;
+};
+
+Result<Flown> fly(const Options& options) {
+  Flown out;
+  auto model_tree = read_toml_resolved(options.model);
+  if (!model_tree) return fail(model_tree.error());
+  auto model = decode_aircraft_model(*model_tree);
+  if (!model) return fail(model.error());
+  out.model = std::move(*model);
+  auto experiment_tree = read_toml_resolved(options.experiment);
+  if (!experiment_tree) return fail(experiment_tree.error());
+  auto experiment = decode_experiment(*experiment_tree, out.model);
+  if (!experiment) return fail(experiment.error());
+  out.experiment = std::move(*experiment);
+  auto flight = Flight::prepare(out.model.aircraft, out.experiment.flight);
+  if (!flight) return fail(Error{options.experiment, 0, flight.error().key, flight.error().message});
+  // A record of no campaign: study and cell are those of this command.
+  const TrialSeed seed{options.seed, name_hash("simulate"), 0, options.repetition};
+  flight->fly(reference_signal(out.experiment, seed), seed, out.record);
+  return out;
+}
+
+void write_samples(const std::string& path, const Flown& flown) {
+  const FlightRecord& record = flown.record;
+  const Eigen::Index n = record.samples;
+  Eigen::MatrixXd columns(n, 13);
+  for (Eigen::Index i = 0; i < n; ++i) columns(i, 0) = static_cast<double>(i) / flown.experiment.flight.rate_hz;
+  columns.middleCols(1, 3) = record.reference.topRows(n);
+  columns.middleCols(4, 3) = record.input.topRows(n);
+  columns.middleCols(7, 3) = record.output.topRows(n);
+  columns.middleCols(10, 3) = record.auxiliary.topRows(n);
+  write_columns(path, {"t", "r_p", "r_q", "r_r", "xi_c", "eta_c", "zeta_c", "p", "q", "r", "phi", "theta", "V"},
+                columns);
+}
+
+std::string record_toml(const Flown& flown) {
+  const Excitation& excitation = flown.experiment.excitation;
+  const FlightSetup& flight = flown.experiment.flight;
+  std::vector<std::string> lines;
+  for (const int line : excitation.lines) lines.push_back(std::to_string(line));
+  std::string gain;
+  for (int i = 0; i < 3; ++i) {
+    std::vector<std::string> row;
+    for (int j = 0; j < 3; ++j) row.push_back(i == j ? shortest(flight.gain(i)) : "0.0");
+    gain += (i > 0 ? ", [" : "[") + join(row) + "]";
+  }
+  std::string text = "# Rates in rad/s, commands in [-1, 1], angles in rad, V in m/s.\n[record]\n";
+  text += "rate_hz = " + shortest(flight.rate_hz) + "\n";
+  if (flight.closed_loop) text += "reference = [\"r_p\", \"r_q\", \"r_r\"]\n";
+  text += "input = [\"xi_c\", \"eta_c\", \"zeta_c\"]\noutput = [\"p\", \"q\", \"r\"]\n";
+  text += "auxiliary = [\"phi\", \"theta\", \"V\"]\n";
+  text += "period_samples = " + std::to_string(excitation.period_samples) + "\n";
+  text += "periods = " + std::to_string(excitation.periods) + "\n";
+  text += "excited_lines = [" + join(lines) + "]\n";
+  if (flight.closed_loop) text += "controller_gain = [" + gain + "]\n";
+  text += "trim_speed_m_s = " + shortest(flown.model.aircraft.speed_m_s) + "\n";
+  text += "hold = \"zoh\"\n";
+  return text;
+}
+
+Exit run(const Options& options) {
+  const std::string toml_path = record_toml_beside(options.record);
+  if (toml_path == options.record) {
+    return report(Error{options.record, 0, "-o", "ends in .toml, name a CSV file: its roles go into the TOML beside it"});
+  }
+  for (const std::string& input : {options.model, options.experiment}) {
+    if (std::filesystem::exists(toml_path) && std::filesystem::equivalent(input, toml_path)) {
+      return report(Error{toml_path, 0, "-o", "would overwrite an input, choose another name"});
+    }
+  }
+  auto flown = fly(options);
+  if (!flown) return report(flown.error());
+  const FlightRecord& record = flown->record;
+  if (record.ending != Ending::completed) {
+    std::fprintf(stderr, "fatmc: the flight diverged (%s) at %s s; no record is written\n",
+                 std::string(name(record.ending)).c_str(), significant(record.ending_time_s, 4).c_str());
+    return Exit::failed;
+  }
+  write_samples(options.record, *flown);
+  write_file_atomically(toml_path, record_toml(*flown));
+  const auto percent = [](double share) { return significant(100.0 * share, 3) + " %"; };
+  std::printf("%s: %s s at %s Hz, %zu lines, trim at %s m/s\n", options.record.c_str(),
+              significant(static_cast<double>(record.samples) / flown->experiment.flight.rate_hz, 6).c_str(),
+              shortest(flown->experiment.flight.rate_hz).c_str(), flown->experiment.excitation.lines.size(),
+              shortest(flown->model.aircraft.speed_m_s).c_str());
+  std::printf("  input rms: xi_c %s, eta_c %s, zeta_c %s\n", significant(record.input_rms(0), 3).c_str(),
+              significant(record.input_rms(1), 3).c_str(), significant(record.input_rms(2), 3).c_str());
+  std::printf("  time at limits (position, rate): aileron %s, %s; left %s, %s; right ruddervator %s, %s\n",
+              percent(record.at_position_limit(0)).c_str(), percent(record.at_rate_limit(0)).c_str(),
+              percent(record.at_position_limit(1)).c_str(), percent(record.at_rate_limit(1)).c_str(),
+              percent(record.at_position_limit(2)).c_str(), percent(record.at_rate_limit(2)).c_str());
+  std::printf("  roles of the columns: %s\n  next: fatmc estimate %s -o DIR\n", toml_path.c_str(),
+              options.record.c_str());
+  return Exit::done;
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& app, Exit& exit) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("simulate", "fly one experiment and write it as a record");
+  command->add_option("MODEL", options->model, "aircraft (TOML)")->required();
+  command->add_option("EXPERIMENT", options->experiment, "experiment (TOML)")->required();
+  command->add_option("--seed", options->seed, "seed of excitation, turbulence and sensor noise")->capture_default_str();
+  command->add_option("--repetition", options->repetition, "another draw of the same seed")->capture_default_str();
+  command->add_option("-o,--output", options->record, "RECORD.csv; RECORD.toml is written beside it")->required();
+  command->footer(
+      "Example: fatmc simulate campaigns/models/fat.toml campaigns/experiments/chapter5.toml --seed 1 -o flight.csv");
+  command->callback([options, &exit] { exit = run(*options); });
+}
+
+}  // namespace fatmc::cli

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 
 #include "campaigns/registry_summaries.h"
@@ -63,7 +64,9 @@ Exit run(const Options& options) {
     }
     std::erase_if(rows, [&](const TableRow& row) { return row.table != options.only; });
   }
-  print_tables(rows, options.format);
+  const std::map<std::string, TableFormat> formats = {
+      {"text", TableFormat::text}, {"markdown", TableFormat::markdown}, {"json", TableFormat::json}};
+  print_tables(rows, formats.at(options.format));
   return Exit::done;
 }
 

@@ -5,12 +5,6 @@
 #include "coordinator/cli/command.h"
 
 namespace fatmc::cli {
-
-Exit report(const Error& error) {
-  std::fprintf(stderr, "fatmc: %s\n", error.text().c_str());
-  return Exit::wrong_use;
-}
-
 namespace {
 
 int run(int argc, char** argv) {
@@ -18,7 +12,14 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_help_all_flag("--help-all", "help of all commands");
   Exit exit = Exit::done;
+  add_run_command(app, exit);
+  add_coordinator_command(app, exit);
+  add_status_command(app, exit);
+  add_query_command(app, exit);
+  add_digest_command(app, exit);
+  add_tables_command(app, exit);
   add_linearize_command(app, exit);
+  add_simulate_command(app, exit);
   add_estimate_command(app, exit);
   add_ssv_command(app, exit);
   try {

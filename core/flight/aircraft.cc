@@ -18,7 +18,8 @@ Status check(const Aircraft& a) {
     return fail(Error{"", 0, std::move(key), std::move(message)});
   };
   if (a.ixx_kg_m2 * a.izz_kg_m2 <= a.ixz_kg_m2 * a.ixz_kg_m2) {
-    return wrong("mass.ixz_kg_m2", "its square is at least ixx izz, which no body has; write a smaller value");
+    return wrong("mass.ixz_kg_m2",
+                 "its square is at least ixx izz, which no body has; write a smaller value");
   }
   if (a.ixx_kg_m2 + a.iyy_kg_m2 < a.izz_kg_m2 || a.ixx_kg_m2 + a.izz_kg_m2 < a.iyy_kg_m2 ||
       a.iyy_kg_m2 + a.izz_kg_m2 < a.ixx_kg_m2) {

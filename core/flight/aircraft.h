@@ -1,20 +1,20 @@
 // A rigid aircraft with propeller, aileron and V-tail, as data.
 //
-// Frames: body axes b (x forward, y right, z down; origin at the centre of gravity), earth axes n (north, east,
-// down; flat, not rotating). SI units and radians.
+// Frames: body axes b (x forward, y right, z down; origin at the centre of gravity), earth axes n (north,
+// east, down; flat, not rotating). SI units and radians.
 //
 // Aerodynamics (coefficients of S, c, b; angles of the air-relative velocity (u,v,w), V = |(u,v,w)|):
 //   alpha = atan(w/u),  sin(beta) = v/V,  p^ = p b/(2V),  q^ = q c/(2V),  r^ = r b/(2V)
 //   C_L = C_L0 + C_La alpha + C_Lq q^ + C_Leta eta       C_D = C_D0 + k C_L^2
 //   C_m = C_m0 + C_ma alpha + C_mq q^ + C_meta eta
 //   C_i = C_ibeta sin(beta) + C_ip p^ + C_ir r^ + C_ixi xi + C_izeta zeta     for i in {Y, l, n}
-// Drag acts against the air-relative velocity, lift perpendicular to it in the plane of symmetry, the side force
-// along y_b, the moments about body axes. Side-slip enters as v/V, which saves an arc sine and differs from beta by
-// beta^3/6. The aircraft is symmetric left to right: no propeller torque and no gyroscopics.
+// Drag acts against the air-relative velocity, lift perpendicular to it in the plane of symmetry, the side
+// force along y_b, the moments about body axes. Side-slip enters as v/V, which saves an arc sine and differs
+// from beta by beta^3/6. The aircraft is symmetric left to right: no propeller torque and no gyroscopics.
 //
-// Surfaces: xi the aileron; left and right ruddervator give eta = (right + left)/2 and zeta = (right - left)/2.
-// Positive deflections give negative moments (LN 9300), so that a positive command deflects negatively and gives a
-// positive rate of its axis.
+// Surfaces: xi the aileron; left and right ruddervator give eta = (right + left)/2 and zeta = (right -
+// left)/2. Positive deflections give negative moments (LN 9300), so that a positive command deflects
+// negatively and gives a positive rate of its axis.
 #pragma once
 
 #include <array>
@@ -50,25 +50,26 @@ struct LongitudinalDerivatives {
 
 /// Electric motor and propeller.
 ///   throttle lag (ESC):  d(tau)/dt = (tau_c - tau) / T_esc
-///   propeller speed n:   2 pi J dn/dt = Q_stall tau - Q_n n - Q      (direct-current motor: torque falls with n)
-///   thrust and torque:   T = rho n^2 D^4 C_T(J_a), Q = rho n^2 D^5 C_Q(J_a), J_a = u/(n D), both quadratic in J_a
+///   propeller speed n:   2 pi J dn/dt = Q_stall tau - Q_n n - Q      (direct-current motor: torque falls
+///   with n) thrust and torque:   T = rho n^2 D^4 C_T(J_a), Q = rho n^2 D^5 C_Q(J_a), J_a = u/(n D), both
+///   quadratic in J_a
 /// Thrust acts along x_b, `offset_m` above the centre of gravity (a positive offset pitches down).
 struct Propulsion {
   double esc_time_constant_s = 0.0;
-  double inertia_kg_m2 = 0.0;              ///< J of motor and propeller about the shaft
-  double diameter_m = 0.0;                 ///< D
-  double offset_m = 0.0;                   ///< of the thrust line, upwards
-  std::array<double, 3> thrust{};          ///< C_T = thrust[0] + thrust[1] J_a + thrust[2] J_a^2
-  std::array<double, 3> torque{};          ///< C_Q, likewise
-  double stall_torque_n_m = 0.0;           ///< Q_stall at full throttle
-  double torque_slope_n_m_s = 0.0;         ///< Q_n, per revolution a second
+  double inertia_kg_m2 = 0.0;       ///< J of motor and propeller about the shaft
+  double diameter_m = 0.0;          ///< D
+  double offset_m = 0.0;            ///< of the thrust line, upwards
+  std::array<double, 3> thrust{};   ///< C_T = thrust[0] + thrust[1] J_a + thrust[2] J_a^2
+  std::array<double, 3> torque{};   ///< C_Q, likewise
+  double stall_torque_n_m = 0.0;    ///< Q_stall at full throttle
+  double torque_slope_n_m_s = 0.0;  ///< Q_n, per revolution a second
 };
 
 /// A second-order servo: d2x/dt2 = w^2 (x_c - x) - 2 d w dx/dt, limited in position, rate and acceleration.
 struct Actuator {
-  double frequency_rad_s = 0.0;        ///< w
-  double damping = 0.0;                ///< d
-  double position_limit_rad = 0.0;     ///< symmetric
+  double frequency_rad_s = 0.0;     ///< w
+  double damping = 0.0;             ///< d
+  double position_limit_rad = 0.0;  ///< symmetric
   double rate_limit_rad_s = 0.0;
   double acceleration_limit_rad_s2 = 0.0;
 };
@@ -89,9 +90,9 @@ struct Aircraft {
   // mass and geometry
   double mass_kg = 0.0;
   double ixx_kg_m2 = 0.0, iyy_kg_m2 = 0.0, izz_kg_m2 = 0.0, ixz_kg_m2 = 0.0;  ///< ixz = integral of x z dm
-  double wing_area_m2 = 0.0;  ///< S
-  double span_m = 0.0;        ///< b
-  double chord_m = 0.0;       ///< c
+  double wing_area_m2 = 0.0;                                                  ///< S
+  double span_m = 0.0;                                                        ///< b
+  double chord_m = 0.0;                                                       ///< c
   // flight condition
   double altitude_m = 0.0;  ///< fixes the density, which is then constant
   double speed_m_s = 0.0;   ///< of trim

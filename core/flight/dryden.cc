@@ -1,9 +1,8 @@
 #include "core/flight/dryden.h"
 
-#include <unsupported/Eigen/MatrixFunctions>
-
 #include <cmath>
 #include <complex>
+#include <unsupported/Eigen/MatrixFunctions>
 
 #include "core/base/check.h"
 #include "core/flight/aircraft.h"
@@ -11,11 +10,13 @@
 namespace fatmc {
 namespace {
 
-/// R(t) = pi delta(t): white noise whose one-sided PSD in w is 1 (variance = (1/2pi) W times the two-sided integral).
+/// R(t) = pi delta(t): white noise whose one-sided PSD in w is 1 (variance = (1/2pi) W times the two-sided
+/// integral).
 constexpr double kNoiseIntensity = kPi;
 
-/// Lower-triangular factor of a covariance; a pivot that is rounding alone becomes zero. Over one tick the states of
-/// a chain are nearly dependent (conditional variances go with the fifth power of tick over time constant).
+/// Lower-triangular factor of a covariance; a pivot that is rounding alone becomes zero. Over one tick the
+/// states of a chain are nearly dependent (conditional variances go with the fifth power of tick over time
+/// constant).
 template <int N>
 Eigen::Matrix<double, N, N> semidefinite_factor(const Eigen::Matrix<double, N, N>& covariance) {
   Eigen::Matrix<double, N, N> factor = Eigen::Matrix<double, N, N>::Zero();
@@ -34,7 +35,7 @@ Eigen::Matrix<double, N, N> semidefinite_factor(const Eigen::Matrix<double, N, N
 template <int N>
 Eigen::Matrix<double, N, N> stationary_covariance(const Eigen::Matrix<double, N, N>& a,
                                                   const Eigen::Matrix<double, N, N>& noise) {
-  Eigen::Matrix<double, N * N, N * N> system = Eigen::Matrix<double, N * N, N * N>::Zero();
+  Eigen::Matrix<double, N * N, N* N> system = Eigen::Matrix<double, N * N, N * N>::Zero();
   Eigen::Matrix<double, N * N, 1> right;
   for (int i = 0; i < N; ++i) {
     for (int j = 0; j < N; ++j) {
@@ -64,21 +65,26 @@ double dryden_psd(int channel, double omega, double sigma, double airspeed, doub
   const double wide = 1.0 + square(4.0 * span * omega / (kPi * airspeed));
   const double narrow = 1.0 + square(3.0 * span * omega / (kPi * airspeed));
   switch (channel) {
-    case 0: return square(sigma) * 2.0 * length / (kPi * airspeed) / (1.0 + reduced);
+    case 0:
+      return square(sigma) * 2.0 * length / (kPi * airspeed) / (1.0 + reduced);
     case 1:
-    case 2: return transverse;
+    case 2:
+      return transverse;
     case 3:
       return square(sigma) / (airspeed * length) * 0.8 * std::cbrt(kPi * length / (4.0 * span)) / wide;
-    case 4: return square(omega / airspeed) / wide * transverse;
-    case 5: return square(omega / airspeed) / narrow * transverse;
-    default: break;
+    case 4:
+      return square(omega / airspeed) / wide * transverse;
+    case 5:
+      return square(omega / airspeed) / narrow * transverse;
+    default:
+      break;
   }
   FATMC_CHECK(false, "a gust channel is 0 to 5");
 }
 
 template <int N>
-Dryden::Chain<N> Dryden::discretise(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b,
-                                    double tick_s) {
+Dryden::Chain<N> Dryden::discretise(const Eigen::Matrix<double, N, N>& a,
+                                    const Eigen::Matrix<double, N, 1>& b, double tick_s) {
   // Van Loan (1978): exp([-A, G; 0, A'] h) = [., A_d^-1 Q_d; 0, A_d'] with G = b W b'.
   const Eigen::Matrix<double, N, N> noise = kNoiseIntensity * b * b.transpose();
   Eigen::Matrix<double, 2 * N, 2 * N> block = Eigen::Matrix<double, 2 * N, 2 * N>::Zero();
@@ -96,7 +102,8 @@ Dryden::Chain<N> Dryden::discretise(const Eigen::Matrix<double, N, N>& a, const 
 }
 
 Dryden::Dryden(double sigma, double airspeed, double span, double tick_s) : tick_s_(tick_s) {
-  FATMC_CHECK(sigma >= 0.0 && airspeed > 0.0 && span > 0.0 && tick_s > 0.0, "Dryden parameters are checked before");
+  FATMC_CHECK(sigma >= 0.0 && airspeed > 0.0 && span > 0.0 && tick_s > 0.0,
+              "Dryden parameters are checked before");
   const double tau = kDrydenLength / airspeed;
   const double tau_q = 4.0 * span / (kPi * airspeed);
   const double tau_r = 3.0 * span / (kPi * airspeed);
@@ -133,17 +140,19 @@ Dryden::Dryden(double sigma, double airspeed, double span, double tick_s) : tick
 
 namespace {
 
+/// x <- A x + F n, n standard normal; A and F lower triangular, stored by columns.
 template <int N>
-inline void step_chain(const Eigen::Matrix<double, N, N>& transition, const Eigen::Matrix<double, N, N>& factor,
-                       double* x, RandomStream& random) {
-  std::array<double, N> normal;
+inline void step_chain(const Eigen::Matrix<double, N, N>& transition,
+                       const Eigen::Matrix<double, N, N>& factor, double* x, RandomStream& random) {
+  const double* const a = transition.data();
+  const double* const f = factor.data();
+  double normal[N];
   for (double& value : normal) value = random.normal();
-  std::array<double, N> next{};
-  for (int i = 0; i < N; ++i) {
-    for (int j = 0; j < N; ++j) next[i] += transition(i, j) * x[j];
-    for (int j = 0; j <= i; ++j) next[i] += factor(i, j) * normal[j];
+  for (int i = N - 1; i >= 0; --i) {  // from below: x above is still old
+    double sum = 0.0;
+    for (int j = 0; j <= i; ++j) sum += a[N * j + i] * x[j] + f[N * j + i] * normal[j];
+    x[i] = sum;
   }
-  for (int i = 0; i < N; ++i) x[i] = next[i];
 }
 
 }  // namespace
@@ -166,10 +175,11 @@ void Dryden::advance(StateVector& x, RandomStream& random) const {
 
 Dryden::Gusts Dryden::gusts(const StateVector& x) const {
   const auto row = [](const Eigen::Matrix<double, 2, 3>& c, int i, const double* s) {
-    return c(i, 0) * s[0] + c(i, 1) * s[1] + c(i, 2) * s[2];
+    const double* const at = c.data() + i;  // stored by columns of two
+    return at[0] * s[0] + at[2] * s[1] + at[4] * s[2];
   };
-  return {x[0], row(side_output_, 0, &x[1]), row(vertical_output_, 0, &x[4]), x[7],
-          row(vertical_output_, 1, &x[4]), row(side_output_, 1, &x[1])};
+  return {x[0], row(side_output_, 0, &x[1]),     row(vertical_output_, 0, &x[4]),
+          x[7], row(vertical_output_, 1, &x[4]), row(side_output_, 1, &x[1])};
 }
 
 Eigen::Matrix<double, 6, 6> Dryden::covariance() const {
@@ -197,20 +207,27 @@ double Dryden::sampled_psd(int channel, double omega) const {
     constexpr int n = std::decay_t<decltype(c)>::ColsAtCompileTime;
     Eigen::Matrix<Complex, n, n> pencil = -chain.transition.template cast<Complex>();
     pencil.diagonal().array() += z;
-    const Eigen::Matrix<Complex, 1, n> h = c.template cast<Complex>() * pencil.inverse() *
-                                           chain.noise_factor.template cast<Complex>();
+    const Eigen::Matrix<Complex, 1, n> h =
+        c.template cast<Complex>() * pencil.inverse() * chain.noise_factor.template cast<Complex>();
     return h.squaredNorm() * tick_s_ / kPi;
   };
   using Row1 = Eigen::Matrix<double, 1, 1>;
   using Row3 = Eigen::Matrix<double, 1, 3>;
   switch (channel) {
-    case 0: return density(forward_, Row1(1.0));
-    case 1: return density(side_, Row3(side_output_.row(0)));
-    case 2: return density(vertical_, Row3(vertical_output_.row(0)));
-    case 3: return density(rolling_, Row1(1.0));
-    case 4: return density(vertical_, Row3(vertical_output_.row(1)));
-    case 5: return density(side_, Row3(side_output_.row(1)));
-    default: break;
+    case 0:
+      return density(forward_, Row1(1.0));
+    case 1:
+      return density(side_, Row3(side_output_.row(0)));
+    case 2:
+      return density(vertical_, Row3(vertical_output_.row(0)));
+    case 3:
+      return density(rolling_, Row1(1.0));
+    case 4:
+      return density(vertical_, Row3(vertical_output_.row(1)));
+    case 5:
+      return density(side_, Row3(side_output_.row(1)));
+    default:
+      break;
   }
   FATMC_CHECK(false, "a gust channel is 0 to 5");
 }

@@ -1,18 +1,18 @@
 // Dryden turbulence, translational and rotational (T A.4; MIL-HDBK-1797, above 2000 ft), exact at the ticks.
 //
-// Power spectral densities are one-sided in w = 2 pi f (rad/s), so that the variance is their integral over w from 0
-// to infinity; V airspeed of the filters, b span, one length L and one sigma for all axes (isotropic):
+// Power spectral densities are one-sided in w = 2 pi f (rad/s), so that the variance is their integral over w
+// from 0 to infinity; V airspeed of the filters, b span, one length L and one sigma for all axes (isotropic):
 //   Phi_u = sigma^2 (2L/(pi V)) / (1 + (L w/V)^2)
 //   Phi_v = Phi_w = sigma^2 (L/(pi V)) (1 + 3 (L w/V)^2) / (1 + (L w/V)^2)^2
 //   Phi_p = (sigma^2/(V L)) 0.8 (pi L/(4b))^(1/3) / (1 + (4 b w/(pi V))^2)
 //   Phi_q = (w/V)^2 / (1 + (4 b w/(pi V))^2) Phi_w
 //   Phi_r = (w/V)^2 / (1 + (3 b w/(pi V))^2) Phi_v
-// The handbook writes L_u = 2 L_v = 2 L_w = 1750 ft, which are the same spectra. Two-sided in f (Hz), as a DFT
-// shows them: S(f) = pi Phi(2 pi |f|).
+// The handbook writes L_u = 2 L_v = 2 L_w = 1750 ft, which are the same spectra. Two-sided in f (Hz), as a
+// DFT shows them: S(f) = pi Phi(2 pi |f|).
 //
-// The air's rotation follows from its velocity along the flight path x (frozen field, d/dx = (1/V) d/dt): a body
-// turning with q moves its points by -q x in z and one turning with r by r x in y, so that q_g = -dw_g/dx and
-// r_g = dv_g/dx, each behind its lag. p_g is independent of the others.
+// The air's rotation follows from its velocity along the flight path x (frozen field, d/dx = (1/V) d/dt): a
+// body turning with q moves its points by -q x in z and one turning with r by r x in y, so that q_g =
+// -dw_g/dx and r_g = dv_g/dx, each behind its lag. p_g is independent of the others.
 #pragma once
 
 #include <Eigen/Dense>
@@ -28,8 +28,8 @@ inline constexpr double kDrydenLength = 533.4;  ///< m, 1750 ft
 /// (rad^2/s^2 per rad/s), for the conventions above.
 double dryden_psd(int channel, double omega_rad_s, double sigma_m_s, double airspeed_m_s, double span_m);
 
-/// White-noise filters with the PSDs above, discretised exactly (Van Loan): at the ticks the gusts have the very
-/// covariance and autocovariance of the continuous process. Between ticks they are held.
+/// White-noise filters with the PSDs above, discretised exactly (Van Loan): at the ticks the gusts have the
+/// very covariance and autocovariance of the continuous process. Between ticks they are held.
 class Dryden {
  public:
   static constexpr int kStates = 8;  ///< u | v (2), r | w (2), q | p
@@ -47,7 +47,8 @@ class Dryden {
 
   /// Covariance of the stationary state, for tests: P = A P A' + Q.
   [[nodiscard]] Eigen::Matrix<double, 6, 6> covariance() const;
-  /// One-sided PSD in w of the sequence at the ticks, 0 < w < pi/tick: the continuous PSD with all its aliases.
+  /// One-sided PSD in w of the sequence at the ticks, 0 < w < pi/tick: the continuous PSD with all its
+  /// aliases.
   [[nodiscard]] double sampled_psd(int channel, double omega_rad_s) const;
 
  private:

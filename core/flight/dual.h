@@ -52,7 +52,9 @@ struct Dual {
   friend Dual atan(const Dual& a) { return a.chain(std::atan(a.value), 1.0 / (1.0 + a.value * a.value)); }
   friend Dual sin(const Dual& a) { return a.chain(std::sin(a.value), std::cos(a.value)); }
   friend Dual cos(const Dual& a) { return a.chain(std::cos(a.value), -std::sin(a.value)); }
-  friend Dual asin(const Dual& a) { return a.chain(std::asin(a.value), 1.0 / std::sqrt(1.0 - a.value * a.value)); }
+  friend Dual asin(const Dual& a) {
+    return a.chain(std::asin(a.value), 1.0 / std::sqrt(1.0 - a.value * a.value));
+  }
   friend Dual atan2(const Dual& y, const Dual& x) {
     const double r2 = x.value * x.value + y.value * y.value;
     return linear(std::atan2(y.value, x.value), x.value / r2, y, -y.value / r2, x);

@@ -3,8 +3,8 @@
 //   m (dv/dt + w x v) = F_aero + F_thrust + m g R_bn e_z        v: velocity of the centre of gravity in b
 //   I dw/dt + w x I w = M_aero                                  w: (p, q, r), I with the product ixz
 //   dQ/dt = 1/2 Q * (0, w)                                      Q: attitude of b in n as a unit quaternion
-// Aerodynamic forces see the velocity v - v_g and the rates w - w_g relative to the air (gusts v_g, w_g); thrust
-// sees u - u_g. An extra force or moment belongs where `force` and `moment` are summed.
+// Aerodynamic forces see the velocity v - v_g and the rates w - w_g relative to the air (gusts v_g, w_g);
+// thrust sees u - u_g. An extra force or moment belongs where `force` and `moment` are summed.
 #pragma once
 
 #include <algorithm>
@@ -51,8 +51,8 @@ struct FlightConstants {
   explicit FlightConstants(const Aircraft& aircraft);
 
   double density;
-  double force_scale;                          ///< rho S / 2
-  double half_span, half_chord;                ///< b/2, c/2
+  double force_scale;            ///< rho S / 2
+  double half_span, half_chord;  ///< b/2, c/2
   double span, chord;
   double inverse_mass;
   double ixx, iyy, izz, ixz;
@@ -60,7 +60,7 @@ struct FlightConstants {
   LongitudinalDerivatives lift, pitch;
   double drag_zero, drag_induced;
   LateralDerivatives side, roll, yaw;
-  std::array<double, 3> thrust, torque;        ///< factors of n^2, n u, u^2
+  std::array<double, 3> thrust, torque;  ///< factors of n^2, n u, u^2
   double thrust_offset, stall_torque, torque_slope, inverse_shaft_inertia, inverse_esc;
   std::array<double, 3> servo_stiffness, servo_damping, position_limit, rate_limit, acceleration_limit;
   double full_command;
@@ -76,10 +76,11 @@ std::array<T, 3> down_in_body(const State<T>& x) {
   return {2.0 * (i * k - w * j), 2.0 * (j * k + w * i), w * w - i * i - j * j + k * k};
 }
 
-/// Demanded deflections of normalised commands (xi_c, eta_c, zeta_c) on top of the trim deflections. Left and right
-/// ruddervator carry both pitch and yaw; together they may demand more than a surface can give.
+/// Demanded deflections of normalised commands (xi_c, eta_c, zeta_c) on top of the trim deflections. Left and
+/// right ruddervator carry both pitch and yaw; together they may demand more than a surface can give.
 template <typename T>
-std::array<T, 3> mix(const FlightConstants& k, const std::array<T, 3>& command, const std::array<double, 3>& trim) {
+std::array<T, 3> mix(const FlightConstants& k, const std::array<T, 3>& command,
+                     const std::array<double, 3>& trim) {
   return {trim[0] - k.full_command * command[0], trim[1] - k.full_command * (command[1] - command[2]),
           trim[2] - k.full_command * (command[1] + command[2])};
 }
@@ -96,8 +97,8 @@ inline T limited(const T& value, double limit) {
 
 /// dx/dt.
 template <typename T>
-inline void derivative(const FlightConstants& k, const State<T>& x, const Demand<T>& demand, const Gust<T>& gust,
-                       State<T>& dx) {
+inline void derivative(const FlightConstants& k, const State<T>& x, const Demand<T>& demand,
+                       const Gust<T>& gust, State<T>& dx) {
   using std::atan;
   using std::sqrt;
   constexpr std::size_t v0 = state::velocity;
@@ -143,7 +144,8 @@ inline void derivative(const FlightConstants& k, const State<T>& x, const Demand
   const T thrust = (k.thrust[0] * n + k.thrust[1] * ua) * n + k.thrust[2] * (ua * ua);
   const std::array<T, 3> force = {thrust - drag * ua + lift * wa, qs * lateral(k.side) - drag * va,
                                   -(drag * wa) - lift * ua};
-  const std::array<T, 3> moment = {qs * k.span * lateral(k.roll), qs * k.chord * cm - k.thrust_offset * thrust,
+  const std::array<T, 3> moment = {qs * k.span * lateral(k.roll),
+                                   qs * k.chord * cm - k.thrust_offset * thrust,
                                    qs * k.span * lateral(k.yaw)};
 
   const std::array<T, 3> down = down_in_body(x);
@@ -182,8 +184,8 @@ inline void derivative(const FlightConstants& k, const State<T>& x, const Demand
   dx[state::size - 1] = T(0.0);
 }
 
-/// Holds the servos inside their rate and position stops and the quaternion on the unit sphere, after a step. A servo
-/// that has met its position stop stands still.
+/// Holds the servos inside their rate and position stops and the quaternion on the unit sphere, after a step.
+/// A servo that has met its position stop stands still.
 template <typename T>
 inline void enforce_limits(const FlightConstants& k, State<T>& x) {
   for (std::size_t i = 0; i < 3; ++i) {
@@ -204,9 +206,11 @@ inline void enforce_limits(const FlightConstants& k, State<T>& x) {
   for (std::size_t i = 0; i < 4; ++i) x[i] = x[i] * scale;
 }
 
-/// One classical fourth-order Runge-Kutta step of h seconds (Simulink's ode4, T 3.2.4) with demands and gusts held.
+/// One classical fourth-order Runge-Kutta step of h seconds (Simulink's ode4, T 3.2.4) with demands and gusts
+/// held.
 template <typename T>
-inline void rk4_step(const FlightConstants& k, const Demand<T>& demand, const Gust<T>& gust, double h, State<T>& x) {
+inline void rk4_step(const FlightConstants& k, const Demand<T>& demand, const Gust<T>& gust, double h,
+                     State<T>& x) {
   State<T> slope;
   State<T> sum;
   State<T> at;

@@ -12,7 +12,8 @@ namespace {
 int parts(double tick_s, double part_s) {
   const double ratio = tick_s / part_s;
   const double whole = std::round(ratio);
-  const bool divides = std::isfinite(ratio) && whole >= 1.0 && whole <= 1000.0 && std::abs(ratio - whole) < 1e-9 * whole;
+  const bool divides =
+      std::isfinite(ratio) && whole >= 1.0 && whole <= 1000.0 && std::abs(ratio - whole) < 1e-9 * whole;
   return divides ? static_cast<int>(whole) : 0;
 }
 
@@ -24,8 +25,18 @@ struct Observation {
   double level_turn;  ///< sin(phi) cos(theta)
 };
 
+/// Limits of the flow angles as what velocities compare with.
+struct AngleLimits {
+  explicit AngleLimits(const Validity& v)
+      : tan_alpha_min(std::tan(v.alpha_min_rad)),
+        tan_alpha_max(std::tan(v.alpha_max_rad)),
+        sin_beta_max(std::sin(v.beta_max_rad)) {}
+  double tan_alpha_min, tan_alpha_max, sin_beta_max;
+};
+
 /// Where the model stops being valid. Comparisons are written so that a NaN fails them.
-Ending judge(const Validity& limits, const Observation& at, const Gust<double>& gust, double airspeed) {
+Ending judge(const Validity& limits, const AngleLimits& angles, const Observation& at,
+             const Gust<double>& gust, double airspeed) {
   if (!std::isfinite(airspeed + at.rates[0] + at.rates[1] + at.rates[2] + at.phi + at.theta)) {
     return Ending::not_finite;
   }
@@ -34,10 +45,10 @@ Ending judge(const Validity& limits, const Observation& at, const Gust<double>& 
   const double v = at.velocity[1] - gust.velocity[1];
   const double w = at.velocity[2] - gust.velocity[2];
   // alpha between -pi/2 and pi/2 compares as its tangent; flying backwards is beyond any limit.
-  if (!(u > 0.0 && w >= u * std::tan(limits.alpha_min_rad) && w <= u * std::tan(limits.alpha_max_rad))) {
+  if (!(u > 0.0 && w >= u * angles.tan_alpha_min && w <= u * angles.tan_alpha_max)) {
     return Ending::angle_of_attack;
   }
-  if (!(std::abs(v) <= airspeed * std::sin(limits.beta_max_rad))) return Ending::side_slip;
+  if (!(std::abs(v) <= airspeed * angles.sin_beta_max)) return Ending::side_slip;
   if (!(std::abs(at.phi) <= limits.bank_max_rad)) return Ending::bank;
   if (!(std::abs(at.theta) <= limits.pitch_max_rad)) return Ending::pitch;
   return Ending::completed;
@@ -60,13 +71,20 @@ struct LimitCount {
 
 std::string_view name(Ending ending) {
   switch (ending) {
-    case Ending::completed: return "completed";
-    case Ending::not_finite: return "not finite";
-    case Ending::angle_of_attack: return "angle of attack";
-    case Ending::side_slip: return "side-slip";
-    case Ending::bank: return "bank";
-    case Ending::pitch: return "pitch";
-    case Ending::airspeed: return "airspeed";
+    case Ending::completed:
+      return "completed";
+    case Ending::not_finite:
+      return "not finite";
+    case Ending::angle_of_attack:
+      return "angle of attack";
+    case Ending::side_slip:
+      return "side-slip";
+    case Ending::bank:
+      return "bank";
+    case Ending::pitch:
+      return "pitch";
+    case Ending::airspeed:
+      return "airspeed";
   }
   return "?";
 }
@@ -114,11 +132,12 @@ class Flight::LinearPlant {
   [[nodiscard]] Observation observe() const {
     const double theta = flight_.trim_.alpha_rad + x_[7];
     const State<double>& trim = flight_.trim_.state;
-    return {{x_[3], x_[4], x_[5]},
-            {trim[state::velocity] + x_[0], trim[state::velocity + 1] + x_[1], trim[state::velocity + 2] + x_[2]},
-            x_[6],
-            theta,
-            std::sin(x_[6]) * std::cos(theta)};
+    return {
+        {x_[3], x_[4], x_[5]},
+        {trim[state::velocity] + x_[0], trim[state::velocity + 1] + x_[1], trim[state::velocity + 2] + x_[2]},
+        x_[6],
+        theta,
+        std::sin(x_[6]) * std::cos(theta)};
   }
 
   template <typename Node>
@@ -162,31 +181,36 @@ Result<Flight> Flight::prepare(const Aircraft& aircraft, const FlightSetup& setu
   if (!(setup.rate_hz > 0.0)) return wrong("rate_hz", "write a rate above zero");
   const double tick_s = 1.0 / setup.rate_hz;
   if (parts(tick_s, setup.step_s) == 0) {
-    return wrong("step_s", shortest(setup.step_s) + " does not divide the tick of " + shortest(tick_s) + " s");
+    return wrong("step_s",
+                 shortest(setup.step_s) + " does not divide the tick of " + shortest(tick_s) + " s");
   }
   if (parts(tick_s, setup.imu_step_s) == 0) {
-    return wrong("imu_step_s", shortest(setup.imu_step_s) + " does not divide the tick of " + shortest(tick_s) + " s");
+    return wrong("imu_step_s",
+                 shortest(setup.imu_step_s) + " does not divide the tick of " + shortest(tick_s) + " s");
   }
-  if (!(setup.turbulence_m_s >= 0.0)) return wrong("turbulence_m_s", "write a standard deviation of at least 0");
+  if (!(setup.turbulence_m_s >= 0.0))
+    return wrong("turbulence_m_s", "write a standard deviation of at least 0");
   const Trim trim = trim_level(aircraft);
   if (!trim.usable()) {
-    return wrong("speed_m_s", "no level flight at " + shortest(aircraft.speed_m_s) + " m/s: " +
-                                  (trim.outcome == Trim::Outcome::outside_model
-                                       ? std::string("it needs more than throttle, elevator or angle of attack allow")
-                                       : "the trim solver stopped after " + std::to_string(trim.iterations) +
-                                             " iterations with a residual of " + significant(trim.residual, 3)));
+    return wrong("speed_m_s",
+                 "no level flight at " + shortest(aircraft.speed_m_s) + " m/s: " +
+                     (trim.outcome == Trim::Outcome::outside_model
+                          ? std::string("it needs more than throttle, elevator or angle of attack allow")
+                          : "the trim solver stopped after " + std::to_string(trim.iterations) +
+                                " iterations with a residual of " + significant(trim.residual, 3)));
   }
   return Flight(aircraft, setup, trim);
 }
 
 template <typename PlantType>
-void Flight::fly_plant(PlantType plant, const Eigen::Ref<const Eigen::MatrixX3d>& reference, const TrialSeed& trial,
-                       FlightRecord& record) const {
+void Flight::fly_plant(PlantType plant, const Eigen::Ref<const Eigen::MatrixX3d>& reference,
+                       const TrialSeed& trial, FlightRecord& record) const {
   RandomStream gust_noise(trial, "turbulence");
   RandomStream imu_noise(trial, "imu");
   const bool windy = setup_.turbulence_m_s > 0.0;
   Dryden::StateVector air{};
   if (windy) air = dryden_.start(gust_noise);
+  const AngleLimits angles(aircraft_.validity);
   LimitCount count;
   std::array<double, 3> square_sum{};
   // Rates at the nodes of the last tick, its begin included; only an averaging unit reads them.
@@ -203,9 +227,10 @@ void Flight::fly_plant(PlantType plant, const Eigen::Ref<const Eigen::MatrixX3d>
     }
     const Observation at = plant.observe();
     double air2 = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) air2 += (at.velocity[i] - gust.velocity[i]) * (at.velocity[i] - gust.velocity[i]);
+    for (std::size_t i = 0; i < 3; ++i)
+      air2 += (at.velocity[i] - gust.velocity[i]) * (at.velocity[i] - gust.velocity[i]);
     const double airspeed = std::sqrt(air2);
-    record.ending = judge(aircraft_.validity, at, gust, airspeed);
+    record.ending = judge(aircraft_.validity, angles, at, gust, airspeed);
     if (record.ending != Ending::completed) {
       record.ending_time_s = static_cast<double>(t) * tick_s_;
       break;
@@ -236,8 +261,9 @@ void Flight::fly_plant(PlantType plant, const Eigen::Ref<const Eigen::MatrixX3d>
           setup_.closed_loop ? setup_.gain[i] * (r - y[static_cast<std::size_t>(i)]) : r;
     }
     if (setup_.closed_loop && setup_.turn_coordinator) {
-      const double ground_speed = std::sqrt(at.velocity[0] * at.velocity[0] + at.velocity[1] * at.velocity[1] +
-                                            at.velocity[2] * at.velocity[2]);
+      const double ground_speed =
+          std::sqrt(at.velocity[0] * at.velocity[0] + at.velocity[1] * at.velocity[1] +
+                    at.velocity[2] * at.velocity[2]);
       command[2] += setup_.gain[2] * kGravity / ground_speed * at.level_turn;
     }
     for (int i = 0; i < 3; ++i) {

@@ -21,11 +21,12 @@
 namespace fatmc {
 
 struct FlightSetup {
-  double rate_hz = 50.0;      ///< of the controller and the record (T 3.2.1)
-  double step_s = 0.02;       ///< Runge-Kutta step; divides the tick
-  double imu_step_s = 0.005;  ///< gyro sampling (T 3.2.4); divides the tick. Its last sample of a tick is used, ...
-  bool average_imu = false;   ///< ... or the mean over the tick: a quarter of the noise, 7.5 ms of delay. Rates between
-                              ///< Runge-Kutta nodes are interpolated linearly
+  double rate_hz = 50.0;  ///< of the controller and the record (T 3.2.1)
+  double step_s = 0.02;   ///< Runge-Kutta step; divides the tick
+  double imu_step_s =
+      0.005;  ///< gyro sampling (T 3.2.4); divides the tick. Its last sample of a tick is used, ...
+  bool average_imu = false;  ///< ... or the mean over the tick: a quarter of the noise, 7.5 ms of delay.
+                             ///< Rates between Runge-Kutta nodes are interpolated linearly
   Imu imu;                    ///< the default measures exactly
   double turbulence_m_s = 0;  ///< sigma of Dryden turbulence; 0 is calm
   enum class Plant { nonlinear, linear };
@@ -38,37 +39,43 @@ struct FlightSetup {
 /// How a flight ended.
 enum class Ending {
   completed,
-  not_finite,      ///< a state is NaN or infinite
-  angle_of_attack, side_slip, bank, pitch, airspeed,  ///< left Aircraft::validity
+  not_finite,  ///< a state is NaN or infinite
+  angle_of_attack,
+  side_slip,
+  bank,
+  pitch,
+  airspeed,  ///< left Aircraft::validity
 };
 std::string_view name(Ending ending);
 
-/// n samples by three channels each, one channel contiguous. After a divergence the rows from `samples` on are zero.
+/// n samples by three channels each, one channel contiguous. After a divergence the rows from `samples` on
+/// are zero.
 struct FlightRecord {
   Eigen::MatrixX3d reference;  ///< r: rate commands in rad/s (open loop: commands)
   Eigen::MatrixX3d input;      ///< u: normalised commands xi_c, eta_c, zeta_c
   Eigen::MatrixX3d output;     ///< y: measured p, q, r in rad/s
   Eigen::MatrixX3d auxiliary;  ///< phi, theta in rad, true airspeed in m/s; free of sensor errors
   Ending ending = Ending::completed;
-  Eigen::Index samples = 0;    ///< valid rows
+  Eigen::Index samples = 0;  ///< valid rows
   double ending_time_s = 0.0;
-  /// Share of Runge-Kutta steps after which a servo (aileron, left, right ruddervator) stands at its limit. The linear
-  /// plant has no limits: there, share of ticks at which it exceeds them.
+  /// Share of Runge-Kutta steps after which a servo (aileron, left, right ruddervator) stands at its limit.
+  /// The linear plant has no limits: there, share of ticks at which it exceeds them.
   Eigen::Vector3d at_position_limit = Eigen::Vector3d::Zero();
   Eigen::Vector3d at_rate_limit = Eigen::Vector3d::Zero();
   Eigen::Vector3d input_rms = Eigen::Vector3d::Zero();
 };
 
-/// Trim, linear models and noise filters, made once; `fly` is const, touches nothing shared and may run in any number
-/// of threads.
+/// Trim, linear models and noise filters, made once; `fly` is const, touches nothing shared and may run in
+/// any number of threads.
 class Flight {
  public:
   /// Fails on a setup that cannot be flown (step that does not divide the tick, no trim).
   static Result<Flight> prepare(const Aircraft& aircraft, const FlightSetup& setup);
 
-  /// Flies one record of reference.rows() ticks. Streams: "turbulence" and "imu" of the trial. Equal arguments give
-  /// equal bits. `record` is overwritten; its storage is reused.
-  void fly(const Eigen::Ref<const Eigen::MatrixX3d>& reference, const TrialSeed& trial, FlightRecord& record) const;
+  /// Flies one record of reference.rows() ticks. Streams: "turbulence" and "imu" of the trial. Equal
+  /// arguments give equal bits. `record` is overwritten; its storage is reused.
+  void fly(const Eigen::Ref<const Eigen::MatrixX3d>& reference, const TrialSeed& trial,
+           FlightRecord& record) const;
 
   [[nodiscard]] const Aircraft& aircraft() const { return aircraft_; }
   [[nodiscard]] const FlightSetup& setup() const { return setup_; }

@@ -24,10 +24,11 @@ Gyro::Gyro(const Imu& imu, double sample_rate_hz)
 std::array<double, 3> Gyro::sample(const std::array<double, 3>& rates, RandomStream& random) const {
   std::array<double, 3> out;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double value = bias_[i] + matrix_[i][0] * rates[0] + matrix_[i][1] * rates[1] + matrix_[i][2] * rates[2] +
-                         noise_ * random.normal();
+    const double value = bias_[i] + matrix_[i][0] * rates[0] + matrix_[i][1] * rates[1] +
+                         matrix_[i][2] * rates[2] + noise_ * random.normal();
     // std::clamp lets a NaN through, so that a diverged state stays visible.
-    out[i] = quantum_ > 0.0 ? std::nearbyint(std::clamp(value, -range_, range_) * inverse_quantum_) * quantum_ : value;
+    out[i] = quantum_ > 0.0 ? std::nearbyint(std::clamp(value, -range_, range_) * inverse_quantum_) * quantum_
+                            : value;
   }
   return out;
 }

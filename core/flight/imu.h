@@ -1,8 +1,8 @@
 // Rate gyros of an inertial measurement unit (T A.5).
 //
 //   y = Q( b + (I + M_sf + M_ma) w + v ),   v white with standard deviation N sqrt(sample rate)
-// (A.1 prints M_sf without the identity; its values, parts per million, are errors of a scale of one.) Q saturates at
-// the range and rounds to multiples of 2 range / 2^bits (A.3).
+// (A.1 prints M_sf without the identity; its values, parts per million, are errors of a scale of one.) Q
+// saturates at the range and rounds to multiples of 2 range / 2^bits (A.3).
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@ namespace fatmc {
 struct Imu {
   std::string grade;
   std::array<double, 3> bias_rad_s{};
-  std::array<double, 3> scale_error{};          ///< diagonal of M_sf
-  std::array<double, 6> misalignment_rad{};     ///< M_xy, M_xz, M_yx, M_yz, M_zx, M_zy
-  double noise_rad_sqrt_s = 0.0;                ///< N, angle random walk: rad/s per sqrt(Hz), two-sided
-  double range_rad_s = 0.0;                     ///< 0: neither saturation nor quantisation
+  std::array<double, 3> scale_error{};       ///< diagonal of M_sf
+  std::array<double, 6> misalignment_rad{};  ///< M_xy, M_xz, M_yx, M_yz, M_zx, M_zy
+  double noise_rad_sqrt_s = 0.0;             ///< N, angle random walk: rad/s per sqrt(Hz), two-sided
+  double range_rad_s = 0.0;                  ///< 0: neither saturation nor quantisation
   int bits = 0;
 
   /// 2 range / 2^bits, or 0.

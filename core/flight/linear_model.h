@@ -13,10 +13,22 @@ namespace fatmc {
 /// States of the linear model: deviations from trim. Heading, position and height are left out, since nothing
 /// depends on them.
 inline constexpr int kLinearStates = 16;
-inline constexpr std::array<std::string_view, kLinearStates> kLinearStateNames = {
-    "u",       "v",       "w",         "p",    "q",     "r",            "phi",       "theta",
-    "propeller", "throttle", "aileron", "left_ruddervator", "right_ruddervator",
-    "aileron_rate", "left_ruddervator_rate", "right_ruddervator_rate"};
+inline constexpr std::array<std::string_view, kLinearStates> kLinearStateNames = {"u",
+                                                                                  "v",
+                                                                                  "w",
+                                                                                  "p",
+                                                                                  "q",
+                                                                                  "r",
+                                                                                  "phi",
+                                                                                  "theta",
+                                                                                  "propeller",
+                                                                                  "throttle",
+                                                                                  "aileron",
+                                                                                  "left_ruddervator",
+                                                                                  "right_ruddervator",
+                                                                                  "aileron_rate",
+                                                                                  "left_ruddervator_rate",
+                                                                                  "right_ruddervator_rate"};
 inline constexpr std::array<std::string_view, 3> kInputNames = {"xi_c", "eta_c", "zeta_c"};
 inline constexpr std::array<std::string_view, 3> kOutputNames = {"p", "q", "r"};
 
@@ -46,9 +58,9 @@ struct LinearModel {
 /// Jacobian of the equations of motion at trim, by automatic differentiation (exact to rounding).
 LinearModel linearize(const Aircraft& aircraft, const Trim& trim);
 
-/// Derivative of the map over one tick, flown in `steps` Runge-Kutta steps with commands and gusts held: the very
-/// code that flies, differentiated. Its response is the reference G0: at 2.89 Hz it differs from the continuous
-/// one by 18 % and 10 degrees, mostly the hold.
+/// Derivative of the map over one tick, flown in `steps` Runge-Kutta steps with commands and gusts held: the
+/// very code that flies, differentiated. Its response is the reference G0: at 2.89 Hz it differs from the
+/// continuous one by 18 % and 10 degrees, mostly the hold.
 LinearModel sample(const Aircraft& aircraft, const Trim& trim, double tick_s, int steps);
 
 /// Trim state displaced by `x`, deviations in the order of kLinearStateNames, and back.
@@ -59,7 +71,8 @@ State<T> displaced(const Trim& trim, const std::array<T, kLinearStates>& x) {
   const std::array<T, 4> attitude = quaternion_of(x[6], x[7] + trim.alpha_rad);
   for (std::size_t i = 0; i < 4; ++i) out[i] = attitude[i];
   for (std::size_t i = 0; i < 6; ++i) out[state::velocity + i] = out[state::velocity + i] + x[i];
-  for (std::size_t i = 8; i < kLinearStates; ++i) out[state::propeller + i - 8] = out[state::propeller + i - 8] + x[i];
+  for (std::size_t i = 8; i < kLinearStates; ++i)
+    out[state::propeller + i - 8] = out[state::propeller + i - 8] + x[i];
   return out;
 }
 template <typename T>

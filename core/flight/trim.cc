@@ -110,14 +110,16 @@ Trim trim_level(const Aircraft& a) {
   trim.propeller_hz = unknown[3];
   place(a, unknown, trim.state, trim.demand);
   const double u = trim.state[state::velocity];
-  trim.thrust_n = (k.thrust[0] * trim.propeller_hz + k.thrust[1] * u) * trim.propeller_hz + k.thrust[2] * u * u;
+  trim.thrust_n =
+      (k.thrust[0] * trim.propeller_hz + k.thrust[1] * u) * trim.propeller_hz + k.thrust[2] * u * u;
   State<double> dx;
   derivative(k, trim.state, trim.demand, Gust<double>{}, dx);
   trim.residual = 0.0;
   for (const double slope : dx) trim.residual = std::max(trim.residual, std::abs(slope));
   const bool inside = trim.throttle >= 0.0 && trim.throttle <= 1.0 && trim.propeller_hz > 0.0 &&
                       std::abs(trim.eta_rad) <= a.ruddervator.position_limit_rad &&
-                      trim.alpha_rad >= a.validity.alpha_min_rad && trim.alpha_rad <= a.validity.alpha_max_rad;
+                      trim.alpha_rad >= a.validity.alpha_min_rad &&
+                      trim.alpha_rad <= a.validity.alpha_max_rad;
   trim.outcome = inside ? Trim::Outcome::converged : Trim::Outcome::outside_model;
   return trim;
 }

@@ -5,8 +5,8 @@
 
 namespace fatmc {
 
-/// Level straight flight at the aircraft's trim speed: du/dt = dw/dt = dq/dt = dn/dt = 0 in angle of attack (equal to
-/// pitch), eta, throttle and propeller speed, by Newton's method with exact derivatives.
+/// Level straight flight at the aircraft's trim speed: du/dt = dw/dt = dq/dt = dn/dt = 0 in angle of attack
+/// (equal to pitch), eta, throttle and propeller speed, by Newton's method with exact derivatives.
 struct Trim {
   enum class Outcome { converged, not_converged, outside_model };
   Outcome outcome = Outcome::not_converged;
@@ -22,8 +22,8 @@ struct Trim {
   [[nodiscard]] bool usable() const { return outcome == Outcome::converged; }
 };
 
-/// `outside_model`: a solution exists but needs a throttle outside [0, 1], a deflection beyond its stop, or an angle
-/// of attack beyond the aircraft's validity.
+/// `outside_model`: a solution exists but needs a throttle outside [0, 1], a deflection beyond its stop, or
+/// an angle of attack beyond the aircraft's validity.
 Trim trim_level(const Aircraft& aircraft);
 
 }  // namespace fatmc

@@ -115,6 +115,7 @@ FastLpm::FastLpm(LpmGrid grid, int n_out)
   spectra_.setZero(grid_.bin_count(), n_z_);
   mean_.setZero(lines, n_z_);
   noise_.resize(index(batch_count(lines) * grid_.q_noise() * n_z_));
+  lay_out_transient_weights();
   factors_.resize(index(FactorLayout(grid_).size()));
   z_.resize(index(grid_.window() * n_z_));
   c_z_.resize(index(n_z_ * n_z_));
@@ -175,26 +176,29 @@ void FastLpm::load_spectra(const Eigen::Ref<const Eigen::MatrixXcd>& outputs,
 void FastLpm::load_batch(int batch) {
   const int lines = grid_.line_count(), bins = 2 * grid_.options().n_transient, q = grid_.q_noise();
   ComplexLanes* residual = noise_.data() + batch * q * n_z_;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const int k = line_of(batch, lane, lines);
-    const auto where = grid_.transient_bins(k);
-    const auto weights = grid_.transient_weights(k);
-    const auto complement = grid_.transient_complement(k);
-    const double scale = std::sqrt(grid_.mu_poly(k));  // mu_poly goes into the residuals (2.114)
-    for (int c = 0; c < n_z_; ++c) {
-      const std::complex<double>* z = spectra_.col(c).data();
-      std::complex<double> transient = 0.0;
-      for (int i = 0; i < bins; ++i) transient += weights[index(i)] * z[where[index(i)]];
-      mean_(k, c) = z[grid_.bin(k)] - transient;
-      for (int r = 0; r < q; ++r) {
-        double re = 0.0, im = 0.0;
-        for (int i = 0; i < bins; ++i) {
-          const std::complex<double> value = z[where[index(i)]];
-          re += complement[index(r * bins + i)] * value.real();
-          im += complement[index(r * bins + i)] * value.imag();
+  const Lanes* weights = transient_.data() + batch * (1 + q) * bins;
+  for (int c = 0; c < n_z_; ++c) {
+    const std::complex<double>* z = spectra_.col(c).data();
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const auto where = grid_.transient_bins(line_of(batch, lane, lines));
+      for (int i = 0; i < bins; ++i) {
+        window_[index(i)].re[lane] = z[where[index(i)]].real();
+        window_[index(i)].im[lane] = z[where[index(i)]].imag();
+      }
+    }
+    for (int r = 0; r <= q; ++r) {
+      ComplexLanes sum = zero_lanes();
+      for (int i = 0; i < bins; ++i) {
+        sum.re += weights[r * bins + i] * window_[index(i)].re;
+        sum.im += weights[r * bins + i] * window_[index(i)].im;
+      }
+      if (r < q) {
+        residual[c * q + r] = sum;
+      } else {
+        for (int lane = 0; lane < kLanes; ++lane) {
+          const int k = line_of(batch, lane, lines);
+          mean_(k, c) = z[grid_.bin(k)] - std::complex<double>(sum.re[lane], sum.im[lane]);
         }
-        residual[c * q + r].re[lane] = scale * re;
-        residual[c * q + r].im[lane] = scale * im;
       }
     }
   }
@@ -206,10 +210,29 @@ void FastLpm::load_batch(int batch) {
     for (int j = 0; j < n_in_; ++j) {
       const double deviation = std::sqrt(c[(n_out_ + j) * (n_z_ + 1)].real());
       const std::complex<double> u = mean_(k, n_out_ + j);
+      const double magnitude = std::sqrt(std::norm(u));
       estimate_.U_mean.data(k)[j] = u;
       estimate_.input_snr.data(k)[j] =
-          deviation > 0.0 ? (std::abs(u) - deviation) / deviation : std::numeric_limits<double>::infinity();
-      estimate_.outlier.data(k)[j] = std::abs(u) < 3.0 * deviation ? 1 : 0;
+          deviation > 0.0 ? (magnitude - deviation) / deviation : std::numeric_limits<double>::infinity();
+      estimate_.outlier.data(k)[j] = magnitude < 3.0 * deviation ? 1 : 0;
+    }
+  }
+}
+
+// Weights of the transient fits, a lane a line: q_noise rows of residual coordinates, times sqrt(mu_poly) so that their
+// covariance is that of the sample mean (2.114), then the row that gives the transient.
+void FastLpm::lay_out_transient_weights() {
+  const int lines = grid_.line_count(), bins = 2 * grid_.options().n_transient, q = grid_.q_noise();
+  transient_.resize(index(batch_count(lines) * (1 + q) * bins));
+  window_.resize(index(bins));
+  for (int lane = 0; lane < kLanes; ++lane) {
+    for (int batch = 0; batch < batch_count(lines); ++batch) {
+      const int k = line_of(batch, lane, lines);
+      Lanes* weights = transient_.data() + batch * (1 + q) * bins;
+      for (int i = 0; i < q * bins; ++i) {
+        weights[i][lane] = std::sqrt(grid_.mu_poly(k)) * grid_.transient_complement(k)[index(i)];
+      }
+      for (int i = 0; i < bins; ++i) weights[q * bins + i][lane] = grid_.transient_weights(k)[index(i)];
     }
   }
 }

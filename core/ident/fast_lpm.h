@@ -66,6 +66,7 @@ class FastLpm {
   const FrmEstimate& direct();
 
  private:
+  void lay_out_transient_weights();
   void load_batch(int batch);
   void begin(bool indirect);
   void finish_batch(int batch, const ComplexLanes* factors);
@@ -74,6 +75,8 @@ class FastLpm {
   int n_out_, n_in_, n_z_;
   Eigen::MatrixXcd spectra_;                    ///< bin_count x n_z
   Eigen::MatrixXcd mean_;                       ///< line_count x n_z, Z^
+  std::vector<Lanes> transient_;                ///< a batch: weights of the transient fits
+  std::vector<ComplexLanes> window_;            ///< of one channel: the bins of those fits
   std::vector<ComplexLanes> noise_;             ///< a batch: q_noise x n_z residuals of the transient fits
   std::vector<ComplexLanes> factors_;           ///< of one batch, for references that come only once
   std::vector<ComplexLanes> z_, c_z_, g_z_, small_, solved_, v_, c_v_, b_;

@@ -16,7 +16,9 @@
 // unexplained. Odd R: the fit's error starts with the even power R + 1, which takes the place of R + 2.
 //
 // B_3dB comes from a polynomial of degree max(R, 2) through the estimated element over the same window, its linear term
-// dropped: B_3dB = 2 sqrt((1 - 1/sqrt 2) |g0 / g2|) (C.14).
+// dropped: B_3dB = 2 sqrt((1 - 1/sqrt 2) |g0 / g2|) (C.14). That polynomial is complex, g0 (1 - jx - x^2) at a peak,
+// and C.9 asks where its even part, not its magnitude, drops to 1/sqrt 2: at x^2 = 1 - 1/sqrt 2 instead of 1. So the
+// estimate exceeds the error at a narrow peak by (1 - 1/sqrt 2)^-2 = 11.7 for R = 2: conservative, as 5.3.3 observes.
 #pragma once
 
 #include <optional>

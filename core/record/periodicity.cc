@@ -100,11 +100,12 @@ Result<std::vector<int>> find_excited_lines(const Eigen::Ref<const Eigen::Matrix
   constexpr double kFloor = 1e-5, kStep = 5.0;
   std::vector<double> sorted(magnitude.begin() + 1, magnitude.end());
   for (double& value : sorted) value = std::max(value, kFloor);
-  sorted.push_back(kFloor);
   std::sort(sorted.begin(), sorted.end(), std::greater<>());
   double widest = 0.0, threshold = 0.0;
   for (std::size_t i = 0; i + 1 < sorted.size(); ++i) {
-    if (sorted[i] / sorted[i + 1] > widest) {
+    // The few smallest magnitudes of noise lie far apart: a step counts with at least 8 lines below it, or none at all.
+    const bool counts = sorted[i + 1] == kFloor || sorted.size() - i - 1 >= 8;
+    if (counts && sorted[i] / sorted[i + 1] > widest) {
       widest = sorted[i] / sorted[i + 1];
       threshold = sorted[i];
     }

@@ -19,7 +19,8 @@ int find_period(const Eigen::Ref<const Eigen::MatrixXd>& x);
 
 /// Harmonics of one period that are excited: those above the widest step, of at least a factor 5, in the sorted
 /// magnitudes of the mean spectrum over all periods (of each channel relative to its largest line; the largest over
-/// channels counts). Lines below 1e-5 of the largest are never excited. Fails where no such step exists.
+/// channels counts), with at least 8 lines below it unless they are all below 1e-5 of the largest; such lines are never excited.
+/// Fails where no such step exists, as where every line is excited.
 Result<std::vector<int>> find_excited_lines(const Eigen::Ref<const Eigen::MatrixXd>& x, int period);
 
 }  // namespace fatmc

@@ -115,14 +115,17 @@ void RealDft::transform(std::span<const double> x, std::span<Complex> bins) cons
   fftw_execute_dft(plan_->plan, reinterpret_cast<fftw_complex*>(in), raw(out));
   const std::size_t half = n / 2;
   const double scale = 0.5 / std::sqrt(static_cast<double>(n_));
-  for (std::size_t m = 0; m < bins.size(); ++m) {
-    const Complex a = out[m == half ? 0 : m];
-    const Complex b = std::conj(out[m == 0 || m == half ? 0 : half - m]);
-    const Complex w = plan_->twiddle[m];
-    const Complex odd = a - b;  // 2j O(m)
-    bins[m] = Complex(scale * (a.real() + b.real()) + w.real() * odd.real() - w.imag() * odd.imag(),
-                      scale * (a.imag() + b.imag()) + w.real() * odd.imag() + w.imag() * odd.real());
-  }
+  const auto combine = [&](std::size_t m, std::size_t low, std::size_t high) {
+    const double ar = out[low].real(), ai = out[low].imag(), br = out[high].real(), bi = -out[high].imag();
+    const double wr = plan_->twiddle[m].real(), wi = plan_->twiddle[m].imag();
+    const double dr = ar - br, di = ai - bi;  // 2j O(m)
+    bins[m] = Complex(scale * (ar + br) + wr * dr - wi * di, scale * (ai + bi) + wr * di + wi * dr);
+  };
+  if (bins.empty()) return;
+  combine(0, 0, 0);
+  const std::size_t end = std::min(bins.size(), half);
+  for (std::size_t m = 1; m < end; ++m) combine(m, m, half - m);
+  if (bins.size() > half) combine(half, 0, 0);
 }
 
 void inverse_real_dft(std::span<const Complex> bins, std::span<double> x) {

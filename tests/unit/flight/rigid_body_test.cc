@@ -77,7 +77,8 @@ TEST(RigidBody, FlightWithLiftButWithoutDragKeepsItsEnergy) {
   a.propulsion.thrust = {};
   a.propulsion.offset_m = 0.0;
   a.roll = a.yaw = {};
-  a.pitch.q = 0.0;  // damping takes energy; C_m_alpha gives it, so the body's rotation is left out of the balance ...
+  a.pitch.q =
+      0.0;  // damping takes energy; C_m_alpha gives it, so the body's rotation is left out of the balance ...
   a.pitch.alpha = a.pitch.zero = a.pitch.eta = 0.0;  // ... by having no moments at all
   State<double> x{};
   x[0] = 1.0;
@@ -129,8 +130,8 @@ TEST(RigidBody, TheQuaternionOfBankAndPitchReturnsThem) {
 }
 
 TEST(Atmosphere, DensityIsThatOfTheStandardAtmosphere) {
-  EXPECT_NEAR(isa_density(0.0), 1.2250, 5e-5);      // ISO 2533
-  EXPECT_NEAR(isa_density(5000.0), 0.7361, 1e-4);   // geopotential height, U.S. Standard Atmosphere 1976
+  EXPECT_NEAR(isa_density(0.0), 1.2250, 5e-5);     // ISO 2533
+  EXPECT_NEAR(isa_density(5000.0), 0.7361, 1e-4);  // geopotential height, U.S. Standard Atmosphere 1976
   EXPECT_NEAR(isa_density(610.0), 1.1549, 1e-4);
 }
 

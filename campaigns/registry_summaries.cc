@@ -1,0 +1,17 @@
+#include "campaigns/registry_summaries.h"
+
+#include <vector>
+
+#include "campaigns/coverage/summary.h"
+
+namespace fatmc {
+
+const SummaryStudy* find_summary_study(std::string_view name) {
+  static const std::vector<SummaryStudy> studies = {coverage::kSummaryStudy};
+  for (const SummaryStudy& study : studies) {
+    if (study.name == name) return &study;
+  }
+  return nullptr;
+}
+
+}  // namespace fatmc

@@ -1,0 +1,12 @@
+#include "campaigns/registry_trials.h"
+
+#include "campaigns/coverage/trial.h"
+
+namespace fatmc {
+
+const std::vector<TrialStudy>& trial_studies() {
+  static const std::vector<TrialStudy> studies = {coverage::kTrialStudy};
+  return studies;
+}
+
+}  // namespace fatmc

@@ -1,0 +1,76 @@
+#include "coordinator/cli/campaign_input.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "campaigns/registry_trials.h"
+#include "coordinator/input/toml_file.h"
+#include "core/base/text.h"
+
+namespace fatmc::cli {
+namespace {
+
+constexpr std::int64_t kMostRepetitions = 1'000'000'000;
+
+Tree option_value(std::int64_t value, const char* option) { return Tree{value, option, 0}; }
+
+// The tree must have been decoded without error.
+Status apply(const SpecChanges& changes, Tree& tree, const CampaignSpec& decoded) {
+  if (changes.seed) {
+    Tree campaign = *tree.find("campaign");
+    campaign.set("seed", option_value(*changes.seed, "--seed"));
+    tree.set("campaign", std::move(campaign));
+  }
+  if (!changes.trials && !changes.scale) return {};
+  Tree cells = *tree.find("cell");
+  auto& items = std::get<Tree::Array>(cells.value).items;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const auto repetitions = changes.trials.value_or(static_cast<std::int64_t>(decoded.cells[i].repetitions));
+    const double scaled = std::round(static_cast<double>(repetitions) * changes.scale.value_or(1.0));
+    if (!(scaled <= static_cast<double>(kMostRepetitions))) {
+      return fail(Error{"", 0, "--scale", "gives more than 1000000000 repetitions, write a smaller one"});
+    }
+    const auto option = changes.scale ? "--scale" : "--trials";
+    items[i].set("repetitions",
+                 option_value(std::max<std::int64_t>(1, static_cast<std::int64_t>(scaled)), option));
+  }
+  tree.set("cell", std::move(cells));
+  return {};
+}
+
+}  // namespace
+
+void add_spec_options(CLI::App& command, SpecChanges& changes) {
+  command.add_option("--trials", changes.trials, "repetitions of each cell, instead of the spec's")
+      ->check(CLI::Range(std::int64_t{1}, kMostRepetitions));
+  command.add_option("--scale", changes.scale, "multiplies repetitions")->check(CLI::Range(1e-9, 1e9));
+  command.add_option("--seed", changes.seed, "seed, instead of the spec's")
+      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
+}
+
+std::vector<std::string> words_of(const SpecChanges& changes) {
+  std::vector<std::string> words;
+  if (changes.trials) words.insert(words.end(), {"--trials", std::to_string(*changes.trials)});
+  if (changes.scale) words.insert(words.end(), {"--scale", shortest(*changes.scale)});
+  if (changes.seed) words.insert(words.end(), {"--seed", std::to_string(*changes.seed)});
+  return words;
+}
+
+Result<CampaignSpec> read_campaign(const std::string& path, const SpecChanges& changes) {
+  Result<Tree> tree = read_toml_resolved(path);
+  if (!tree) return fail(tree.error());
+  Result<CampaignSpec> spec = decode_campaign(*tree);
+  if (!spec) return spec;
+  if (Status status = apply(changes, *tree, *spec); !status) return fail(status.error());
+  spec = decode_campaign(*tree);
+  if (!spec) return spec;
+  const Result<const TrialStudy*> study = require_trial_study(*spec);
+  if (!study) return fail(study.error());
+  for (std::uint32_t cell = 0; cell < spec->cells.size(); ++cell) {
+    const auto prepared = (*study)->prepare(*spec, cell);
+    if (!prepared) return fail(prepared.error());
+  }
+  return spec;
+}
+
+}  // namespace fatmc::cli

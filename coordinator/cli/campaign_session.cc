@@ -1,0 +1,177 @@
+#include "coordinator/cli/campaign_session.h"
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "campaigns/registry_summaries.h"
+#include "coordinator/cli/progress_line.h"
+#include "coordinator/report/tables.h"
+#include "coordinator/server/campaign_server.h"
+#include "coordinator/server/local_workers.h"
+#include "coordinator/state/campaign_state.h"
+#include "coordinator/store/campaign_store.h"
+#include "proto/build_hash.h"
+
+namespace fatmc::cli {
+namespace {
+
+constexpr std::chrono::milliseconds kByePatience{1500};
+
+// results/last names the databases of the last run, a path a line, for `fatmc tables` without arguments.
+void write_last(const std::string& database) {
+  std::filesystem::create_directories("results");
+  const std::string fresh = "results/last.new";
+  std::ofstream(fresh) << std::filesystem::absolute(database).lexically_normal().string() << "\n";
+  std::filesystem::rename(fresh, "results/last");
+}
+
+void print_outcomes(const CampaignReader& reader, const std::string& database) {
+  std::map<std::string, std::uint64_t> counts;
+  std::uint64_t stored = 0;
+  for (const OutcomeCount& count : reader.outcomes()) {
+    counts[count.outcome] += count.trials;
+    stored += count.trials;
+  }
+  std::string text = std::to_string(counts["ok"]) + " ok";
+  for (const auto& [outcome, trials] : counts) {
+    if (outcome != "ok") text += ", " + std::to_string(trials) + " " + outcome;
+  }
+  std::printf("%llu of %llu trials: %s\ndatabase: %s\n", static_cast<unsigned long long>(stored),
+              static_cast<unsigned long long>(reader.spec().trial_count()), text.c_str(), database.c_str());
+  std::fflush(stdout);
+}
+
+Exit print_summary(const std::string& database) {
+  Result<CampaignReader> reader = CampaignReader::open(database);
+  if (!reader) return report(reader.error());
+  print_outcomes(*reader, database);
+  const SummaryStudy* study = find_summary_study(reader->spec().study);
+  if (study == nullptr) return Exit::done;
+  const auto tables = study->tables(reader->spec(), reader->rows());
+  if (!tables) {
+    report(tables.error());
+    return Exit::failed;
+  }
+  // Curves take many rows: they wait for `fatmc tables`.
+  std::vector<TableRow> shown;
+  std::set<std::string> curves;
+  for (const TableRow& row : *tables) {
+    if (row.table.starts_with("Fig.")) curves.insert(row.table);
+    else shown.push_back(row);
+  }
+  std::printf("\n");
+  print_tables(shown, TableFormat::text);
+  for (const std::string& name : curves) {
+    std::printf("\n%s: fatmc tables %s --only \"%s\"\n", name.c_str(), database.c_str(), name.c_str());
+  }
+  return Exit::done;
+}
+
+void report_counters(const CampaignState& state, std::uint64_t malformed) {
+  const StateCounters& c = state.counters();
+  if (c.conflicts > 0) {
+    std::fprintf(
+        stderr,
+        "fatmc: ALARM: %llu results differ from what is stored for the same trial; the stored ones were "
+        "kept, but trials of this build are not reproducible\n",
+        static_cast<unsigned long long>(c.conflicts));
+  }
+  spdlog::info(
+      "duplicates {}, conflicts {}, reclaimed leases {}, refused {}, foreign {}, out of plan {}, malformed "
+      "{}",
+      c.duplicates, c.conflicts, c.reclaimed, c.refused_hellos, c.foreign, c.out_of_plan, malformed);
+}
+
+// The serving part; returns nothing when all is stored.
+std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& options, CampaignStore& store) {
+  StateOptions state_options;
+  state_options.first_lease =
+      static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(
+                                     std::chrono::system_clock::now().time_since_epoch())
+                                     .count());
+  CampaignState state(store.plan(spec), Welcome{spec.identity(), spec.tree, 0}, build_hash(), state_options);
+  if (state.finished()) return std::nullopt;
+  const auto server = CampaignServer::bind({.endpoint = options.endpoint}, state, store);
+  if (!server) return report(server.error());
+  if (options.workers == 0) {
+    std::fprintf(stderr, "fatmc: %llu trials to do; start workers by: fatmc-worker --connect %s\n",
+                 static_cast<unsigned long long>(state.planned() - state.stored()),
+                 (*server)->endpoint().c_str());
+  }
+  LocalWorkerOptions worker_options;
+  worker_options.program = worker_program_beside_this();
+  worker_options.endpoint = (*server)->endpoint();
+  worker_options.count =
+      static_cast<unsigned>(std::min<std::uint64_t>(options.workers, state.planned() - state.stored()));
+  worker_options.verbose = options.verbose;
+  LocalWorkers workers(worker_options);
+  ProgressLine progress(state.planned());
+  progress.show(state.stored());
+  workers.start();
+  ServerHooks hooks;
+  hooks.on_tick = [&] { progress.show(state.stored()); };
+  hooks.on_child = [&] {
+    for (const std::uint32_t pid : workers.reap(state.stored())) (*server)->on_process_ended(pid);
+  };
+  hooks.failure = [&] { return workers.failure(); };
+  const ServerEnd end = (*server)->run(hooks);
+  progress.finish(state.stored());
+  workers.stop(kByePatience);
+  report_counters(state, (*server)->malformed());
+  if (end == ServerEnd::finished) return std::nullopt;
+  const std::string resume = "; what is stored stays, go on by: " + options.resume_command;
+  if (end == ServerEnd::interrupted) {
+    std::fprintf(stderr, "fatmc: stopped with %llu of %llu trials stored%s\n",
+                 static_cast<unsigned long long>(state.stored()),
+                 static_cast<unsigned long long>(state.planned()), resume.c_str());
+    return Exit::partial;
+  }
+  std::fprintf(stderr, "fatmc: %s%s%s%s\n", workers.failure().c_str(),
+               state.last_refusal().empty() ? "" : ": ", state.last_refusal().c_str(), resume.c_str());
+  return Exit::failed;
+}
+
+}  // namespace
+
+std::string default_database(const CampaignSpec& spec) { return "results/" + spec.name + ".db"; }
+
+std::string shell_line(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) {
+    if (!out.empty()) out += ' ';
+    const bool plain = !word.empty() && word.find_first_not_of(
+                                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                            "0123456789-_./:=,+@%") == std::string::npos;
+    if (plain) {
+      out += word;
+      continue;
+    }
+    out += '\'';
+    for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    out += '\'';
+  }
+  return out;
+}
+
+Exit run_session(const CampaignSpec& spec, const SessionOptions& options) {
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("coordinator"));
+  spdlog::set_level(options.verbose ? spdlog::level::debug : spdlog::level::off);
+  {
+    const BlockedSignals blocked;
+    Result<CampaignStore> store = CampaignStore::open(options.database, spec, build_hash());
+    if (!store) return report(store.error());
+    write_last(options.database);
+    if (const auto exit = serve(spec, options, *store)) return *exit;
+  }
+  return print_summary(options.database);
+}
+
+}  // namespace fatmc::cli

@@ -1,0 +1,31 @@
+// One coordinator's life with one database, as `fatmc run` and `fatmc coordinator` share it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "campaigns/base/campaign_spec.h"
+#include "coordinator/cli/command.h"
+
+namespace fatmc::cli {
+
+struct SessionOptions {
+  std::string database;
+  std::string endpoint = "tcp://127.0.0.1:*";
+  /// Worker processes to start here; 0: workers come by themselves.
+  unsigned workers = 0;
+  bool verbose = false;
+  /// The command that resumes this one.
+  std::string resume_command;
+};
+
+/// Serves the campaign until it is done, then prints outcomes and tables.
+Exit run_session(const CampaignSpec& spec, const SessionOptions& options);
+
+/// "results/NAME.db"
+std::string default_database(const CampaignSpec& spec);
+
+/// The words as a line that a shell reads back.
+std::string shell_line(const std::vector<std::string>& words);
+
+}  // namespace fatmc::cli

@@ -1,0 +1,58 @@
+// fatmc coordinator: serves a campaign to workers that are started by hand.
+#include <memory>
+
+#include "coordinator/cli/campaign_input.h"
+#include "coordinator/cli/campaign_session.h"
+#include "coordinator/cli/command.h"
+#include "proto/endpoint.h"
+
+namespace fatmc::cli {
+namespace {
+
+struct CoordinatorOptions {
+  std::string spec, database, endpoint;
+  SpecChanges changes;
+  bool verbose = false;
+};
+
+std::vector<std::string> resume_words(const CoordinatorOptions& options) {
+  std::vector<std::string> words{"fatmc",          "coordinator", options.spec,    "--bind",
+                                 options.endpoint, "--db",        options.database};
+  for (std::string& word : words_of(options.changes)) words.push_back(std::move(word));
+  return words;
+}
+
+Exit serve(const CoordinatorOptions& options) {
+  if (const Status status = check_plain_endpoint(options.endpoint, "--bind"); !status)
+    return report(status.error());
+  const Result<CampaignSpec> spec = read_campaign(options.spec, options.changes);
+  if (!spec) return report(spec.error());
+  SessionOptions session;
+  session.database = options.database;
+  session.endpoint = options.endpoint;
+  session.verbose = options.verbose;
+  session.resume_command = shell_line(resume_words(options));
+  return run_session(*spec, session);
+}
+
+}  // namespace
+
+void add_coordinator_command(CLI::App& app, Exit& exit) {
+  auto options = std::make_shared<CoordinatorOptions>();
+  CLI::App* command =
+      app.add_subcommand("coordinator", "serves a campaign to workers that are started elsewhere");
+  command->footer(
+      "Plain TCP is for the loopback alone. The database is resumed when it exists.\n"
+      "Example: fatmc coordinator campaigns/coverage/spec.toml --bind tcp://127.0.0.1:5555 --db "
+      "results/coverage.db\n"
+      "    and: fatmc-worker --connect tcp://127.0.0.1:5555 --jobs 2");
+  command->add_option("SPEC", options->spec, "the campaign (TOML)")->required();
+  command->add_option("--bind", options->endpoint, "endpoint, tcp://127.0.0.1:PORT or ipc://PATH")
+      ->required();
+  command->add_option("--db", options->database, "database")->required();
+  add_spec_options(*command, options->changes);
+  command->add_flag("--verbose", options->verbose, "log messages to standard error");
+  command->callback([options, &exit] { exit = serve(*options); });
+}
+
+}  // namespace fatmc::cli

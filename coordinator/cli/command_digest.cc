@@ -1,0 +1,28 @@
+// fatmc digest: one line that is the same for the same results.
+#include <cstdio>
+#include <memory>
+
+#include "coordinator/cli/command.h"
+#include "coordinator/store/campaign_store.h"
+
+namespace fatmc::cli {
+
+void add_digest_command(CLI::App& app, Exit& exit) {
+  auto path = std::make_shared<std::string>();
+  CLI::App* command =
+      app.add_subcommand("digest", "SHA-256 of all results of a database, in the order of trials");
+  command->footer(
+      "Times, hosts and attempts are left out: whoever computed them, the same results give the same line.\n"
+      "Example: fatmc digest results/coverage.db");
+  command->add_option("DB", *path, "database")->required();
+  command->callback([path, &exit] {
+    const Result<CampaignReader> reader = CampaignReader::open(*path);
+    if (!reader) {
+      exit = report(reader.error());
+      return;
+    }
+    std::printf("%s\n", reader->digest().c_str());
+  });
+}
+
+}  // namespace fatmc::cli

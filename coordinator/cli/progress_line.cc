@@ -1,0 +1,83 @@
+#include "coordinator/cli/progress_line.h"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/text.h"
+
+namespace fatmc::cli {
+namespace {
+
+constexpr double kWindowS = 10.0;  // short enough to follow a change, long enough to be calm
+constexpr std::chrono::milliseconds kRedraw{200};
+constexpr std::chrono::milliseconds kNewLine{5000};
+constexpr std::uint64_t kBarWidth = 30;
+
+}  // namespace
+
+void RateMeter::add(Seconds time, std::uint64_t done) {
+  samples_.emplace_back(time, done);
+  while (samples_.size() > 2 && (time - samples_.front().first).count() > kWindowS) samples_.pop_front();
+}
+
+double RateMeter::per_second() const {
+  if (samples_.size() < 2) return 0.0;
+  const double span = (samples_.back().first - samples_.front().first).count();
+  return span > 0.0 ? static_cast<double>(samples_.back().second - samples_.front().second) / span : 0.0;
+}
+
+double RateMeter::seconds_left(std::uint64_t left) const {
+  const double rate = per_second();
+  return rate > 0.0 ? static_cast<double>(left) / rate : -1.0;
+}
+
+std::string clock_text(double seconds) {
+  if (!(seconds >= 0.0) || seconds > 3.6e9) return "?";
+  const auto all = static_cast<long long>(std::ceil(seconds));
+  char text[64];
+  if (all >= 3600) {
+    std::snprintf(text, sizeof text, "%lld:%02lld:%02lld", all / 3600, all / 60 % 60, all % 60);
+  } else {
+    std::snprintf(text, sizeof text, "%lld:%02lld", all / 60, all % 60);
+  }
+  return text;
+}
+
+ProgressLine::ProgressLine(std::uint64_t total)
+    : total_(total),
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      start_(std::chrono::steady_clock::now()),
+      last_(start_) {}
+
+void ProgressLine::show(std::uint64_t done) {
+  const auto now = std::chrono::steady_clock::now();
+  rate_.add(now - start_, done);
+  if (now - last_ < (terminal_ ? kRedraw : kNewLine)) return;
+  last_ = now;
+  draw(done);
+}
+
+void ProgressLine::draw(std::uint64_t done) {
+  const std::string text = std::to_string(done) + "/" + std::to_string(total_) + " trials, " +
+                           significant(rate_.per_second(), 3) + "/s, ETA " +
+                           clock_text(rate_.seconds_left(total_ - done));
+  if (terminal_) {
+    const std::uint64_t filled = total_ > 0 ? kBarWidth * done / total_ : kBarWidth;
+    std::fprintf(stderr, "\r[%s%s] %s\033[K", std::string(filled, '#').c_str(),
+                 std::string(kBarWidth - filled, '.').c_str(), text.c_str());
+    std::fflush(stderr);
+    drawn_ = true;
+  } else {
+    std::fprintf(stderr, "%s\n", text.c_str());
+  }
+}
+
+void ProgressLine::finish(std::uint64_t done) {
+  if (!drawn_) return;
+  draw(done);
+  std::fprintf(stderr, "\n");
+}
+
+}  // namespace fatmc::cli

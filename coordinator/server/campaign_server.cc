@@ -1,0 +1,201 @@
+#include "coordinator/server/campaign_server.h"
+
+#include <signal.h>
+#include <spdlog/spdlog.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <zmq.hpp>
+
+#include "core/base/check.h"
+#include "proto/endpoint.h"
+
+namespace fatmc {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kLingerMs = 1000;
+constexpr int kMessagesBetweenLooks = 256;  // at signals and clocks, when messages never end
+
+sigset_t served_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGTERM);
+  sigaddset(&set, SIGCHLD);
+  return set;
+}
+
+int open_signals() {
+  const sigset_t set = served_signals();
+  return ::signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+}
+
+MonotonicTime now() { return Clock::now().time_since_epoch(); }
+
+}  // namespace
+
+BlockedSignals::BlockedSignals() {
+  const sigset_t set = served_signals();
+  pthread_sigmask(SIG_BLOCK, &set, &before_);
+}
+
+BlockedSignals::~BlockedSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+std::string host_name() {
+  char name[256] = {};
+  return ::gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
+}
+
+struct CampaignServer::Parts {
+  zmq::context_t context{1};
+  zmq::socket_t socket{context, zmq::socket_type::router};
+  std::string endpoint;
+  int signals = open_signals();
+  std::vector<StoreRequest> batch;
+  std::size_t batch_rows = 0;
+  MonotonicTime batch_since{};
+  ~Parts() { ::close(signals); }
+};
+
+CampaignServer::CampaignServer(const ServerOptions& options, CampaignState& state, CampaignStore& store)
+    : options_(options), state_(state), store_(store), parts_(std::make_unique<Parts>()) {
+  FATMC_CHECK(parts_->signals >= 0, "out of file descriptors");
+  zmq::socket_t& socket = parts_->socket;
+  socket.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(kMaxFrameBytes));
+  socket.set(zmq::sockopt::linger, kLingerMs);
+  socket.set(zmq::sockopt::router_handover, true);  // a worker that reconnects keeps its routing id
+  socket.set(zmq::sockopt::ipv6, options.endpoint.find('[') != std::string::npos);
+}
+
+CampaignServer::~CampaignServer() = default;
+
+Result<std::unique_ptr<CampaignServer>> CampaignServer::bind(const ServerOptions& options,
+                                                             CampaignState& state, CampaignStore& store) {
+  if (Status status = check_plain_endpoint(options.endpoint, "--bind"); !status) return fail(status.error());
+  std::unique_ptr<CampaignServer> server(new CampaignServer(options, state, store));
+  try {
+    server->parts_->socket.bind(options.endpoint);
+  } catch (const zmq::error_t& e) {
+    return fail(Error{"", 0, "--bind",
+                      "\"" + options.endpoint + "\" cannot be used (" + e.what() + "), write another port"});
+  }
+  server->parts_->endpoint = server->parts_->socket.get(zmq::sockopt::last_endpoint);
+  return server;
+}
+
+const std::string& CampaignServer::endpoint() const { return parts_->endpoint; }
+
+void CampaignServer::send(const WorkerId& worker, const Message& message) {
+  spdlog::debug("to {}: {}", worker.substr(0, 8), message_name(message));
+  zmq::socket_t& socket = parts_->socket;
+  // A worker that is gone or does not read: ROUTER drops the message, and leases expire.
+  if (socket.send(zmq::buffer(worker), zmq::send_flags::sndmore | zmq::send_flags::dontwait)) {
+    socket.send(zmq::buffer(encode(message)), zmq::send_flags::dontwait);
+  }
+}
+
+void CampaignServer::store(StoreRequest request) {
+  Parts& parts = *parts_;
+  if (parts.batch_rows + request.rows.size() > options_.batch_rows) commit();
+  if (parts.batch.empty()) parts.batch_since = now();
+  parts.batch_rows += request.rows.size();
+  parts.batch.push_back(std::move(request));
+}
+
+void CampaignServer::commit() {
+  Parts& parts = *parts_;
+  if (parts.batch.empty()) return;
+  std::vector<StoreRequest> batch;
+  batch.swap(parts.batch);
+  parts.batch_rows = 0;
+  for (const StoreReport& report : store_.commit(batch)) state_.on_stored(report, now(), *this);
+}
+
+void CampaignServer::receive() {
+  zmq::socket_t& socket = parts_->socket;
+  for (int i = 0; i < kMessagesBetweenLooks; ++i) {
+    zmq::message_t id, frame;
+    if (!socket.recv(id, zmq::recv_flags::dontwait)) return;
+    if (!id.more() || !socket.recv(frame, zmq::recv_flags::dontwait)) {
+      ++malformed_;
+      continue;
+    }
+    if (frame.more()) {
+      ++malformed_;
+      for (zmq::message_t rest = std::move(frame); rest.more();) {
+        zmq::message_t next;
+        if (!socket.recv(next, zmq::recv_flags::dontwait)) break;
+        rest = std::move(next);
+      }
+      continue;
+    }
+    Result<Message> message = decode(frame.to_string_view());
+    if (!message) {
+      ++malformed_;
+      spdlog::warn("{}", message.error().text());
+      continue;
+    }
+    spdlog::debug("from {}: {}", id.to_string().substr(0, 8), message_name(*message));
+    state_.on_message(id.to_string(), std::move(*message), now(), *this);
+    if (state_.all_received() || parts_->batch_rows >= options_.batch_rows) commit();
+  }
+}
+
+std::chrono::milliseconds CampaignServer::wait_time() const {
+  if (parts_->batch.empty()) return options_.tick;
+  const auto left =
+      std::chrono::ceil<std::chrono::milliseconds>(parts_->batch_since + options_.batch_wait - now());
+  return std::clamp(left, std::chrono::milliseconds(0), options_.tick);
+}
+
+ServerEnd CampaignServer::run(const ServerHooks& hooks) {
+  zmq::pollitem_t items[] = {{parts_->socket.handle(), 0, ZMQ_POLLIN, 0},
+                             {nullptr, parts_->signals, ZMQ_POLLIN, 0}};
+  MonotonicTime last_tick = now();
+  ServerEnd end = ServerEnd::finished;
+  while (!state_.finished()) {
+    zmq::poll(items, std::size(items), wait_time());
+    signalfd_siginfo signal{};
+    bool interrupted = false;
+    while (::read(parts_->signals, &signal, sizeof signal) == sizeof signal) {
+      if (signal.ssi_signo != SIGCHLD) {
+        interrupted = true;
+      } else if (hooks.on_child) {
+        hooks.on_child();
+      }
+    }
+    receive();
+    if (!parts_->batch.empty() && now() - parts_->batch_since >= options_.batch_wait) commit();
+    if (now() - last_tick >= options_.tick) {
+      last_tick = now();
+      state_.on_tick(last_tick, *this);
+      if (hooks.on_tick) hooks.on_tick();
+    }
+    if (interrupted) {
+      end = ServerEnd::interrupted;
+      break;
+    }
+    if (hooks.failure && !hooks.failure().empty()) {
+      end = ServerEnd::failed;
+      break;
+    }
+  }
+  commit();
+  if (state_.finished()) end = ServerEnd::finished;
+  say_bye(end == ServerEnd::finished);
+  return end;
+}
+
+void CampaignServer::say_bye(bool finished) {
+  for (const WorkerId& worker : state_.workers()) {
+    send(worker, Bye{finished ? "the campaign is finished" : "the coordinator stops", finished});
+  }
+}
+
+void CampaignServer::on_process_ended(std::uint32_t pid) {
+  for (const WorkerId& worker : state_.workers_of_pid(pid, host_name())) state_.on_gone(worker, now(), *this);
+}
+
+}  // namespace fatmc

@@ -1,0 +1,88 @@
+// The coordinator's socket loop: one thread that owns the ROUTER socket and the database.
+//
+// Messages go to CampaignState, whose decisions it carries out. Rows are gathered and committed in one
+// transaction as soon as there are 100, or the oldest has waited for 50 ms, or nothing more can come; only
+// then are they acknowledged. Messages that are malformed or too large are counted and dropped.
+#pragma once
+
+#include <signal.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "coordinator/state/campaign_state.h"
+#include "coordinator/store/campaign_store.h"
+#include "core/base/error.h"
+
+namespace fatmc {
+
+struct ServerOptions {
+  std::string endpoint = "tcp://127.0.0.1:*";
+  std::size_t batch_rows = kMaxRowsPerMessage;
+  std::chrono::milliseconds batch_wait{50};
+  std::chrono::milliseconds tick{100};
+};
+
+/// What happens beside the socket. Each is called on the server's thread and may be empty.
+struct ServerHooks {
+  std::function<void()> on_tick;
+  /// A child of this process has ended (SIGCHLD).
+  std::function<void()> on_child;
+  /// A reason to give up, or an empty string.
+  std::function<std::string()> failure;
+};
+
+enum class ServerEnd { finished, interrupted, failed };
+
+class CampaignServer : private Outbox {
+ public:
+  /// Binds; SIGINT, SIGTERM and SIGCHLD must be blocked (BlockedSignals) before.
+  static Result<std::unique_ptr<CampaignServer>> bind(const ServerOptions& options, CampaignState& state,
+                                                      CampaignStore& store);
+  ~CampaignServer() override;
+
+  /// With the port that was found for "*".
+  [[nodiscard]] const std::string& endpoint() const;
+  /// Serves until all is stored, a signal comes, or a hook reports a failure; then says BYE to all workers.
+  /// Throws when the database fails.
+  ServerEnd run(const ServerHooks& hooks);
+  /// A process of this host has ended.
+  void on_process_ended(std::uint32_t pid);
+  /// Messages that could not be read.
+  [[nodiscard]] std::uint64_t malformed() const { return malformed_; }
+
+ private:
+  struct Parts;
+  CampaignServer(const ServerOptions& options, CampaignState& state, CampaignStore& store);
+  void send(const WorkerId& worker, const Message& message) override;
+  void store(StoreRequest request) override;
+  void receive();
+  void commit();
+  void say_bye(bool finished);
+  [[nodiscard]] std::chrono::milliseconds wait_time() const;
+
+  ServerOptions options_;
+  CampaignState& state_;
+  CampaignStore& store_;
+  std::unique_ptr<Parts> parts_;
+  std::uint64_t malformed_ = 0;
+};
+
+/// Blocks SIGINT, SIGTERM and SIGCHLD, which the server reads from a descriptor, as long as it lives. To be
+/// made before any thread exists.
+class BlockedSignals {
+ public:
+  BlockedSignals();
+  ~BlockedSignals();
+  BlockedSignals(const BlockedSignals&) = delete;
+  BlockedSignals& operator=(const BlockedSignals&) = delete;
+
+ private:
+  sigset_t before_;
+};
+
+std::string host_name();
+
+}  // namespace fatmc

@@ -1,0 +1,59 @@
+// Worker processes on this machine, started and watched by `fatmc run`.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace fatmc {
+
+struct LocalWorkerOptions {
+  std::string program;  ///< path of fatmc-worker
+  std::string endpoint;
+  unsigned count = 1;
+  bool verbose = false;
+  /// Crashes without a single trial stored in between after which restarting is given up.
+  unsigned crashes_in_vain = 5;
+};
+
+/// Single-threaded: all calls from the server's thread.
+class LocalWorkers {
+ public:
+  explicit LocalWorkers(LocalWorkerOptions options) : options_(std::move(options)) {}
+  /// Waits for them (see stop()).
+  ~LocalWorkers();
+  LocalWorkers(const LocalWorkers&) = delete;
+  LocalWorkers& operator=(const LocalWorkers&) = delete;
+
+  /// Throws std::system_error when a process cannot be started.
+  void start();
+  /// Collects processes that ended and replaces those that crashed. Returns the ids of those that ended.
+  /// `stored`: trials stored so far, from which it sees whether restarting gets anywhere.
+  std::vector<std::uint32_t> reap(std::uint64_t stored);
+  /// Why no worker can be had any more; empty while they can.
+  [[nodiscard]] const std::string& failure() const { return failure_; }
+  /// Waits for all to end by themselves (they were told BYE), and ends those that do not within `patience`.
+  void stop(std::chrono::milliseconds patience);
+
+  [[nodiscard]] const std::vector<pid_t>& processes() const { return processes_; }
+  [[nodiscard]] std::uint64_t restarts() const { return restarts_; }
+
+ private:
+  void spawn();
+  void judge(int status, std::uint64_t stored);
+
+  LocalWorkerOptions options_;
+  std::vector<pid_t> processes_;
+  std::uint64_t stored_at_last_crash_ = 0;
+  unsigned crashes_ = 0;
+  std::uint64_t restarts_ = 0;
+  std::string failure_;
+};
+
+/// fatmc-worker beside the program that runs.
+std::string worker_program_beside_this();
+
+}  // namespace fatmc

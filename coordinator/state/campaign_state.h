@@ -1,0 +1,158 @@
+// Who computes what: all decisions of the coordinator, without socket, database, thread or clock.
+//
+// Events come in as calls that carry the time; what is to be done goes out through an Outbox. A plan is cells
+// with repetitions. Each trial of it is in one of these states:
+//
+//   pending -> leased to one worker -> received (in a batch not yet committed) -> stored
+//
+// A lease that its worker has not mentioned (in HEARTBEAT or RESULTS) for `lease_timeout` is taken back: that
+// covers a dead worker as well as a LEASE that was lost on the way. Results are welcome from whoever brings
+// them: the store drops a row that it has, so that lease expiry can only cost work and never a result.
+//
+// Invariants (tests/unit/state): what was acknowledged is stored; a trial is stored once; while a worker
+// lives, the run ends.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "campaigns/base/campaign_spec.h"
+#include "coordinator/state/index_ranges.h"
+#include "proto/wire.h"
+
+namespace fatmc {
+
+using WorkerId = std::string;                    ///< the worker's incarnation, also its routing id
+using MonotonicTime = std::chrono::nanoseconds;  ///< since any fixed moment
+
+struct PlanCell {
+  std::uint64_t repetitions = 0;
+  IndexRanges stored;  ///< what the database has already
+};
+
+struct StateOptions {
+  std::chrono::milliseconds heartbeat{500};
+  /// Four heartbeats: one may be late and one lost before work is done twice.
+  std::chrono::milliseconds lease_timeout{2000};
+  /// A lease should keep a worker busy this long: many times the round trip (below 1 ms), short against a
+  /// run.
+  std::chrono::milliseconds target_lease{250};
+  /// Trials shorter than this are leased ahead, before a thread is idle; of longer ones a round trip is
+  /// nothing, and a queued trial would wait in one worker while another has none.
+  std::chrono::milliseconds prefetch_below{50};
+  std::uint64_t largest_lease = 4096;
+  /// Lease ids count from here. A restarted coordinator should begin beyond those of the one before, so that
+  /// a worker that lives on cannot confuse their leases.
+  std::uint64_t first_lease = 1;
+};
+
+/// Rows on their way to the store.
+struct StoreRequest {
+  WorkerId worker;
+  std::uint64_t sequence = 0;
+  std::string host;
+  std::uint32_t pid = 0;
+  std::vector<ComputedRow> rows;
+  std::vector<std::uint32_t> attempts;  ///< a number a row: how often its trial was leased
+};
+
+enum class StoreOutcome { stored, duplicate, conflict };
+
+/// What became of a StoreRequest, after the commit.
+struct StoreReport {
+  WorkerId worker;
+  std::uint64_t sequence = 0;
+  std::vector<std::pair<TrialKey, StoreOutcome>> rows;
+};
+
+class Outbox {
+ public:
+  virtual ~Outbox() = default;
+  virtual void send(const WorkerId& worker, const Message& message) = 0;
+  /// To be answered by CampaignState::on_stored() once committed.
+  virtual void store(StoreRequest request) = 0;
+};
+
+struct StateCounters {
+  std::uint64_t duplicates = 0;      ///< rows that the database had
+  std::uint64_t conflicts = 0;       ///< alarm: same trial, other result; never overwritten
+  std::uint64_t out_of_plan = 0;     ///< rows of no cell or repetition of the plan
+  std::uint64_t foreign = 0;         ///< batches of another campaign
+  std::uint64_t refused_hellos = 0;  ///< another protocol or build
+  std::uint64_t unexpected = 0;      ///< messages that a worker has no business sending
+  std::uint64_t reclaimed = 0;       ///< leases taken back
+};
+
+class CampaignState {
+ public:
+  CampaignState(std::vector<PlanCell> plan, Welcome welcome, std::string build, StateOptions options = {});
+
+  void on_message(const WorkerId& worker, Message message, MonotonicTime now, Outbox& out);
+  void on_stored(const StoreReport& report, MonotonicTime now, Outbox& out);
+  /// The worker's process has ended: its leases are free at once.
+  void on_gone(const WorkerId& worker, MonotonicTime now, Outbox& out);
+  /// Time passes: takes back what is overdue. To be called once a heartbeat or more often.
+  void on_tick(MonotonicTime now, Outbox& out);
+
+  [[nodiscard]] bool finished() const { return stored_ == planned_; }
+  [[nodiscard]] std::uint64_t planned() const { return planned_; }
+  [[nodiscard]] std::uint64_t stored() const { return stored_; }
+  /// All that is missing is in a batch: no reason to wait for more before committing.
+  [[nodiscard]] bool all_received() const { return stored_ + received_ == planned_; }
+  [[nodiscard]] std::vector<WorkerId> workers() const;
+  /// The workers of a process on this host; for launchers that see their children end.
+  [[nodiscard]] std::vector<WorkerId> workers_of_pid(std::uint32_t pid, const std::string& host) const;
+  [[nodiscard]] const StateCounters& counters() const { return counters_; }
+  /// The last reason for which a worker or a HELLO was turned away; empty when there was none.
+  [[nodiscard]] const std::string& last_refusal() const { return last_refusal_; }
+
+ private:
+  struct CellState {
+    std::uint64_t repetitions = 0;
+    IndexRanges pending, received, stored;
+    std::map<std::uint64_t, std::uint32_t> retries;  ///< of trials that were leased more than once
+    double mean_trial_ns = 0.0;
+    std::uint64_t timed = 0;
+  };
+  struct WorkerState {
+    Hello hello;
+    MonotonicTime last_heard{};
+    std::uint64_t newest_lease = 0;
+    bool waiting = false;  ///< asked for work when there was none
+    std::uint32_t idle = 0;
+  };
+  struct LeaseState {
+    WorkerId worker;
+    std::uint32_t cell = 0;
+    IndexRanges missing;
+    MonotonicTime last_mentioned{};
+  };
+
+  void on_hello(const WorkerId& worker, const Hello& hello, MonotonicTime now, Outbox& out);
+  void on_credit(const WorkerId& worker, const Credit& credit, MonotonicTime now, Outbox& out);
+  void on_results(const WorkerId& worker, Results results, MonotonicTime now, Outbox& out);
+  void on_heartbeat(const WorkerId& worker, const Heartbeat& heartbeat, MonotonicTime now, Outbox& out);
+  void take_row(const WorkerId& worker, const ComputedRow& row, MonotonicTime now);
+  void measure(CellState& cell, std::uint64_t duration_ns);
+  void reclaim(std::uint64_t lease);
+  void forget(const WorkerId& worker);
+  bool grant(const WorkerId& worker, WorkerState& state, MonotonicTime now, Outbox& out);
+  void serve_waiting(MonotonicTime now, Outbox& out);
+  [[nodiscard]] std::uint64_t lease_size(const WorkerState& worker, const CellState& cell) const;
+
+  std::vector<CellState> cells_;
+  std::map<WorkerId, WorkerState> workers_;
+  std::map<std::uint64_t, LeaseState> leases_;
+  Welcome welcome_;
+  std::string build_;
+  StateOptions options_;
+  std::uint64_t next_lease_;
+  std::uint64_t planned_ = 0, stored_ = 0, received_ = 0, pending_ = 0;
+  StateCounters counters_;
+  std::string last_refusal_;
+};
+
+}  // namespace fatmc

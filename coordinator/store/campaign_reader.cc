@@ -1,0 +1,130 @@
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <SQLiteCpp/Savepoint.h>
+#include <sqlite3.h>
+
+#include <cstring>
+#include <filesystem>
+#include <map>
+
+#include "coordinator/store/campaign_store.h"
+#include "coordinator/store/schema.h"
+#include "coordinator/store/stored_campaign.h"
+
+namespace fatmc {
+namespace {
+
+// Advances a statement ordered by trial through the rows of one trial.
+template <typename Use>
+void consume(SQLite::Statement& statement, bool& more, std::int64_t trial, Use use) {
+  while (more && statement.getColumn(0).getInt64() < trial) more = statement.executeStep();
+  while (more && statement.getColumn(0).getInt64() == trial) {
+    use();
+    more = statement.executeStep();
+  }
+}
+
+std::map<std::int64_t, std::string> read_names(SQLite::Database& db) {
+  std::map<std::int64_t, std::string> names;
+  SQLite::Statement all(db, "SELECT id, text FROM name");
+  while (all.executeStep()) names.emplace(all.getColumn(0).getInt64(), all.getColumn(1).getString());
+  return names;
+}
+
+double read_real(const SQLite::Column& column) {
+  if (!column.isBlob()) return column.getDouble();
+  double value = 0.0;  // a NaN, see CampaignStore
+  if (column.getBytes() == sizeof value) std::memcpy(&value, column.getBlob(), sizeof value);
+  return value;
+}
+
+std::vector<double> read_reals(const SQLite::Column& column) {
+  std::vector<double> values(static_cast<std::size_t>(column.getBytes()) / sizeof(double));
+  if (!values.empty()) std::memcpy(values.data(), column.getBlob(), values.size() * sizeof(double));
+  return values;
+}
+
+}  // namespace
+
+struct CampaignReader::Parts {
+  std::unique_ptr<SQLite::Database> db;
+  StoredCampaign campaign;
+};
+
+CampaignReader::CampaignReader(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+CampaignReader::CampaignReader(CampaignReader&&) noexcept = default;
+CampaignReader::~CampaignReader() = default;
+
+Result<CampaignReader> CampaignReader::open(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) {
+    return fail(Error{path, 0, "", "no such database, name one that `fatmc run` made"});
+  }
+  auto db = std::make_unique<SQLite::Database>(path, SQLite::OPEN_READONLY, 5000);
+  Result<StoredCampaign> campaign = read_campaign(*db, path);
+  if (!campaign) return fail(campaign.error());
+  return CampaignReader(std::make_unique<Parts>(Parts{std::move(db), std::move(*campaign)}));
+}
+
+const CampaignSpec& CampaignReader::spec() const { return parts_->campaign.spec; }
+std::string CampaignReader::build() const { return parts_->campaign.build; }
+SQLite::Database& CampaignReader::database() const { return *parts_->db; }
+
+std::uint64_t CampaignReader::stored() const {
+  return static_cast<std::uint64_t>(parts_->db->execAndGet("SELECT count(*) FROM trial").getInt64());
+}
+
+std::vector<OutcomeCount> CampaignReader::outcomes() const {
+  std::vector<OutcomeCount> out;
+  SQLite::Statement rows(*parts_->db, "SELECT cell, outcome, trials FROM outcomes");
+  while (rows.executeStep()) {
+    out.push_back({rows.getColumn(0).getString(), rows.getColumn(1).getString(),
+                   static_cast<std::uint64_t>(rows.getColumn(2).getInt64())});
+  }
+  return out;
+}
+
+void CampaignReader::visit(std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor) const {
+  SQLite::Database& db = *parts_->db;
+  SQLite::Savepoint snapshot(db, "visit");  // several statements, one state of the database; visits may nest
+  const auto names = read_names(db);
+  const std::string range = " BETWEEN " + std::to_string(trial_id({cell, 0})) + " AND " +
+                            std::to_string(trial_id({cell + 1, 0}) - 1) + " ORDER BY ";
+  SQLite::Statement trials(db, "SELECT id, repetition, outcome, detail FROM trial WHERE id" + range + "id");
+  SQLite::Statement metrics(db,
+                            "SELECT trial, name, value FROM metric WHERE trial" + range + "trial, position");
+  SQLite::Statement arrays(db, "SELECT trial, name, data FROM array WHERE trial" + range + "trial, position");
+  bool more_metrics = metrics.executeStep();
+  bool more_arrays = arrays.executeStep();
+  while (trials.executeStep()) {
+    TrialRow row;
+    row.key = {cell, static_cast<std::uint64_t>(trials.getColumn(1).getInt64())};
+    row.outcome = trials.getColumn(2).getString();
+    row.detail = trials.getColumn(3).getString();
+    const std::int64_t id = trials.getColumn(0).getInt64();
+    consume(metrics, more_metrics, id, [&] {
+      row.metrics.emplace_back(names.at(metrics.getColumn(1).getInt64()), read_real(metrics.getColumn(2)));
+    });
+    consume(arrays, more_arrays, id, [&] {
+      row.arrays.emplace_back(names.at(arrays.getColumn(1).getInt64()), read_reals(arrays.getColumn(2)));
+    });
+    visitor(row);
+  }
+  for (SQLite::Statement* statement : {&trials, &metrics, &arrays}) statement->reset();
+  snapshot.release();
+}
+
+RowSource CampaignReader::rows() const {
+  return [this](std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor) {
+    visit(cell, visitor);
+  };
+}
+
+std::string CampaignReader::digest() const {
+  Digest digest;
+  const auto& cells = spec().cells;
+  for (std::uint32_t cell = 0; cell < cells.size(); ++cell) {
+    visit(cell, [&](const TrialRow& row) { digest.add(cells[cell].name, row); });
+  }
+  return digest.text();
+}
+
+}  // namespace fatmc

@@ -1,0 +1,82 @@
+// The database of one campaign: its only writer, and readers.
+//
+// WAL with synchronous=FULL: a commit is one append and one fsync, so that an acknowledged row outlives kill
+// -9 and a power cut, and readers (`fatmc status`, `fatmc query`) never wait for the writer nor it for them.
+// A rollback journal would sync twice or three times a commit and lock readers out meanwhile. The price:
+// FILE-wal and FILE-shm stand beside FILE while it is open, and the file must be on a local disk.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "campaigns/base/campaign_spec.h"
+#include "campaigns/base/study.h"
+#include "coordinator/state/campaign_state.h"
+#include "core/base/error.h"
+
+namespace SQLite {
+class Database;
+}
+
+namespace fatmc {
+
+/// Writes a campaign's rows. I/O errors throw SQLite::Exception.
+class CampaignStore {
+ public:
+  /// Creates the file (and its folder), or opens one of the same spec, seed and build: it is resumed, and
+  /// extended where the spec has more repetitions. An Error says what differs and what to do.
+  static Result<CampaignStore> open(const std::string& path, const CampaignSpec& spec,
+                                    const std::string& build);
+
+  CampaignStore(CampaignStore&&) noexcept;
+  ~CampaignStore();
+
+  /// Cells of the spec with what is stored of them.
+  [[nodiscard]] std::vector<PlanCell> plan(const CampaignSpec& spec);
+
+  /// One transaction, on disk when it returns. A row whose trial is stored already is left out: `duplicate`
+  /// when its content hash is the same, else `conflict`.
+  std::vector<StoreReport> commit(std::span<const StoreRequest> requests);
+
+ private:
+  struct Parts;
+  explicit CampaignStore(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+struct OutcomeCount {
+  std::string cell, outcome;
+  std::uint64_t trials = 0;
+};
+
+/// Reads a campaign's rows, also while another process writes them.
+class CampaignReader {
+ public:
+  static Result<CampaignReader> open(const std::string& path);
+
+  CampaignReader(CampaignReader&&) noexcept;
+  ~CampaignReader();
+
+  /// As stored, with the numbers of repetitions that the database plans.
+  [[nodiscard]] const CampaignSpec& spec() const;
+  [[nodiscard]] std::string build() const;
+  [[nodiscard]] std::uint64_t stored() const;
+  [[nodiscard]] std::vector<OutcomeCount> outcomes() const;
+  /// Rows of a cell in the order of repetitions.
+  void visit(std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor) const;
+  /// For SummaryStudy; the reader must outlive it.
+  [[nodiscard]] RowSource rows() const;
+  /// SHA-256 over all results in the order of their keys: the same whoever computed them, and when.
+  [[nodiscard]] std::string digest() const;
+  [[nodiscard]] SQLite::Database& database() const;
+
+ private:
+  struct Parts;
+  explicit CampaignReader(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace fatmc

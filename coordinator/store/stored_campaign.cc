@@ -1,0 +1,54 @@
+#include "coordinator/store/stored_campaign.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <sqlite3.h>
+
+#include "coordinator/store/schema.h"
+#include "proto/wire.h"
+
+namespace fatmc {
+namespace {
+
+Result<CampaignSpec> decode_spec(SQLite::Database& db, const SQLite::Column& blob, const std::string& path) {
+  const Result<Message> frame = decode(
+      std::string_view(static_cast<const char*>(blob.getBlob()), static_cast<std::size_t>(blob.getBytes())));
+  if (!frame || !std::holds_alternative<Welcome>(*frame)) {
+    return fail(Error{path, 0, "campaign.spec", "cannot be read, the file is damaged"});
+  }
+  Result<CampaignSpec> spec = decode_campaign(std::get<Welcome>(*frame).spec);
+  if (!spec) return spec;
+  SQLite::Statement cells(db, "SELECT name, repetitions FROM cell ORDER BY id");
+  for (Cell& cell : spec->cells) {
+    if (!cells.executeStep() || cells.getColumn(0).getString() != cell.name) {
+      return fail(Error{path, 0, "cell", "does not match the spec, the file is damaged"});
+    }
+    cell.repetitions = static_cast<std::uint64_t>(cells.getColumn(1).getInt64());
+  }
+  return spec;
+}
+
+}  // namespace
+
+Result<StoredCampaign> read_campaign(SQLite::Database& db, const std::string& path) {
+  try {
+    if (db.execAndGet("PRAGMA application_id").getInt() != kApplicationId) {
+      return fail(Error{path, 0, "", "is a database of something else, name one that fatmc made"});
+    }
+    const int version = db.execAndGet("PRAGMA user_version").getInt();
+    if (version != kSchemaVersion) {
+      return fail(Error{path, 0, "",
+                        "has schema " + std::to_string(version) + ", this program reads " +
+                            std::to_string(kSchemaVersion) + "; use the program that made it"});
+    }
+    SQLite::Statement row(db, "SELECT spec, identity, build FROM campaign");
+    if (!row.executeStep()) return fail(Error{path, 0, "campaign", "is empty, the file is damaged"});
+    Result<CampaignSpec> spec = decode_spec(db, row.getColumn(0), path);
+    if (!spec) return fail(spec.error());
+    return StoredCampaign{std::move(*spec), row.getColumn(1).getString(), row.getColumn(2).getString()};
+  } catch (const SQLite::Exception& e) {
+    if (e.getErrorCode() != SQLITE_NOTADB && e.getErrorCode() != SQLITE_CORRUPT) throw;
+    return fail(Error{path, 0, "", "is no database, name one that fatmc made"});
+  }
+}
+
+}  // namespace fatmc

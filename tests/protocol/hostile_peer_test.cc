@@ -1,0 +1,147 @@
+// The socket loop against peers that do not keep to the protocol; a well-behaved worker must not notice them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <future>
+#include <zmq.hpp>
+
+#include "coordinator/server/campaign_server.h"
+
+namespace fatmc {
+namespace {
+
+Tree leaf(auto value) { return Tree{std::move(value), "spec.toml", 1}; }
+
+CampaignSpec two_trials() {
+  Tree campaign = leaf(Tree::Table{}), cell = campaign, tree = campaign;
+  campaign.set("study", leaf(std::string("s")));
+  campaign.set("seed", leaf(std::int64_t{1}));
+  cell.set("name", leaf(std::string("c")));
+  cell.set("repetitions", leaf(std::int64_t{2}));
+  tree.set("campaign", campaign);
+  tree.set("cell", leaf(Tree::Array{{cell}}));
+  return *decode_campaign(tree);
+}
+
+class Peer {
+ public:
+  Peer(zmq::context_t& context, const std::string& endpoint, const std::string& id)
+      : socket_(context, ZMQ_DEALER) {
+    socket_.set(zmq::sockopt::routing_id, id);
+    socket_.set(zmq::sockopt::linger, 2000);
+    socket_.set(zmq::sockopt::rcvtimeo, 20'000);
+    socket_.connect(endpoint);
+  }
+  void send(const Message& message) { raw({encode(message)}); }
+  void raw(const std::vector<std::string>& frames) {
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      socket_.send(zmq::buffer(frames[i]),
+                   i + 1 < frames.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
+    }
+  }
+  /// The next message of type T; others are passed over.
+  template <typename T>
+  T expect() {
+    for (;;) {
+      zmq::message_t frame;
+      if (!socket_.recv(frame)) throw std::runtime_error("no answer");
+      const Result<Message> message = decode(frame.to_string_view());
+      if (message && std::holds_alternative<T>(*message)) return std::get<T>(*message);
+    }
+  }
+
+ private:
+  zmq::socket_t socket_;
+};
+
+class Serving : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(testing::TempDir()) / "hostile_peer_test";
+    std::filesystem::remove_all(folder_);
+    store_.emplace(std::move(*CampaignStore::open((folder_ / "c.db").string(), spec_, "build")));
+    state_.emplace(store_->plan(spec_), Welcome{spec_.identity(), spec_.tree, 0}, "build");
+    server_ = std::move(*CampaignServer::bind({}, *state_, *store_));
+    end_ = std::async(std::launch::async, [this] { return server_->run({}); });
+  }
+  void TearDown() override {
+    store_.reset();
+    std::filesystem::remove_all(folder_);
+  }
+  Hello hello(const std::string& id) const { return {kProtocolVersion, "build", id, "host", 1, 1}; }
+  ComputedRow row(std::uint64_t repetition) const {
+    ComputedRow out;
+    out.row.key = {0, repetition};
+    out.hash = content_hash(out.row);
+    return out;
+  }
+  // A worker that does all that is left.
+  void finish() {
+    Peer worker(context_, server_->endpoint(), good_);
+    worker.send(hello(good_));
+    EXPECT_EQ(worker.expect<Welcome>().campaign, spec_.identity());
+    worker.send(Results{spec_.identity(), 1, {row(0), row(1)}});
+    EXPECT_EQ(worker.expect<Ack>().sequence, 1U);
+    EXPECT_TRUE(worker.expect<Bye>().finished);
+    EXPECT_EQ(end_.get(), ServerEnd::finished);
+  }
+
+  const BlockedSignals blocked_;
+  const std::string good_ = std::string(32, 'a'), bad_ = std::string(32, 'b');
+  CampaignSpec spec_ = two_trials();
+  std::filesystem::path folder_;
+  zmq::context_t context_;
+  std::optional<CampaignStore> store_;
+  std::optional<CampaignState> state_;
+  std::unique_ptr<CampaignServer> server_;
+  std::future<ServerEnd> end_;
+};
+
+TEST_F(Serving, FramesThatCannotBeReadAreCountedAndDropped) {
+  Peer peer(context_, server_->endpoint(), bad_);
+  peer.raw({"nonsense"});
+  peer.raw({""});
+  peer.raw({"two", "frames"});
+  peer.raw({encode(hello(bad_)), "and more", "and more"});
+  ComputedRow damaged = row(0);
+  damaged.hash[0] ^= 1;
+  peer.send(Results{spec_.identity(), 1, {damaged}});
+  peer.send(hello(bad_));  // answered after all of the above was read
+  peer.expect<Welcome>();
+  finish();
+  EXPECT_EQ(server_->malformed(), 5U);
+}
+
+TEST_F(Serving, AFrameAboveTheLimitClosesItsConnectionAndNothingElse) {
+  Peer peer(context_, server_->endpoint(), bad_);
+  peer.raw({std::string(kMaxFrameBytes + 1, 'x')});
+  finish();
+}
+
+TEST_F(Serving, AnotherBuildAndAForeignRoutingIdAreRefused) {
+  Peer peer(context_, server_->endpoint(), bad_);
+  Hello other = hello(bad_);
+  other.build = "another";
+  peer.send(other);
+  EXPECT_EQ(peer.expect<Refused>().code, Refused::Code::build);
+  peer.send(hello(good_));
+  EXPECT_EQ(peer.expect<Refused>().code, Refused::Code::protocol);
+  peer.send(Results{spec_.identity(), 1, {row(0)}});
+  EXPECT_EQ(peer.expect<Refused>().code, Refused::Code::hello_wanted);
+  finish();
+}
+
+TEST_F(Serving, AWorkerMayNotSpeakAsTheCoordinator) {
+  Peer peer(context_, server_->endpoint(), bad_);
+  peer.send(hello(bad_));
+  peer.expect<Welcome>();
+  peer.send(Lease{1, 0, 0, 2});
+  peer.send(Ack{1});
+  peer.send(Heartbeat{});
+  peer.expect<Heartbeat>();
+  finish();
+  EXPECT_EQ(state_->counters().unexpected, 2U);
+}
+
+}  // namespace
+}  // namespace fatmc

@@ -1,0 +1,98 @@
+// A study for tests of the engine: cheap, deterministic, with every kind of outcome. No shipped program has
+// it.
+//
+//   [[cell]]
+//   name = "a"
+//   repetitions = 100
+//   work = 200000          # steps of a chaotic map, about 1 ns each
+//   diverge_every = 10     # 0: never
+//   array = 5              # length of the array of a row
+//   crash_at = -1          # the repetition at which the process aborts
+//   throw_at = -1          # the repetition at which the trial throws
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "campaigns/base/decoder.h"
+#include "campaigns/registry_summaries.h"
+#include "campaigns/registry_trials.h"
+
+namespace fatmc {
+namespace {
+
+class TestCell final : public PreparedCell {
+ public:
+  TestCell(const CampaignSpec& spec, std::uint32_t cell, Decoder& table) : spec_(spec), cell_(cell) {
+    work_ = table.integer("work", {.low = 0, .high = 10'000'000'000}, 0);
+    diverge_every_ = table.integer("diverge_every", {.low = 0}, 0);
+    array_ = table.integer("array", {.low = 0, .high = 1'000'000}, 0);
+    crash_at_ = table.integer("crash_at", {.low = -1}, -1);
+    throw_at_ = table.integer("throw_at", {.low = -1}, -1);
+  }
+
+  [[nodiscard]] TrialRow run(std::uint64_t repetition) const override {
+    const auto number = static_cast<std::int64_t>(repetition);
+    if (number == crash_at_) std::abort();
+    if (number == throw_at_) throw std::runtime_error("as the spec told it");
+    RandomStream stream(spec_.trial_seed({cell_, repetition}), "test");
+    double x = stream.uniform();
+    for (std::int64_t i = 0; i < work_; ++i) x = 3.9 * x * (1.0 - x);  // the logistic map, chaotic at 3.9
+    TrialRow row;
+    row.key = {cell_, repetition};
+    if (diverge_every_ > 0 && number % diverge_every_ == diverge_every_ - 1) {
+      row.outcome = "diverged";
+      row.detail = "as the spec told it";
+      return row;
+    }
+    row.metrics = {{"x", x}, {"normal", stream.normal()}};
+    std::vector<double> values(static_cast<std::size_t>(array_));
+    for (double& value : values) value = stream.normal();
+    row.arrays = {{"values", std::move(values)}};
+    return row;
+  }
+
+ private:
+  CampaignSpec spec_;
+  std::uint32_t cell_;
+  std::int64_t work_ = 0, diverge_every_ = 0, array_ = 0, crash_at_ = -1, throw_at_ = -1;
+};
+
+Result<std::unique_ptr<PreparedCell>> prepare(const CampaignSpec& spec, std::uint32_t cell) {
+  Decoder table(spec.cells.at(cell).tree, "cell");
+  table.skip("name");
+  table.skip("repetitions");
+  auto made = std::make_unique<TestCell>(spec, cell, table);
+  if (Status status = table.finish(); !status) return fail(status.error());
+  return made;
+}
+
+Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& rows) {
+  std::vector<TableRow> out;
+  for (std::uint32_t cell = 0; cell < spec.cells.size(); ++cell) {
+    double sum = 0.0;
+    std::uint64_t count = 0;
+    rows(cell, [&](const TrialRow& row) {
+      if (row.outcome != "ok") return;
+      sum += row.metrics.at(1).second;
+      ++count;
+    });
+    const auto n = static_cast<double>(count);
+    out.push_back({"test", spec.cells[cell].name, "mean of a standard normal", "1", 0.0, sum / n,
+                   -2.0 / std::sqrt(n), 2.0 / std::sqrt(n), count, "shape", ""});
+  }
+  return out;
+}
+
+}  // namespace
+
+const std::vector<TrialStudy>& trial_studies() {
+  static const std::vector<TrialStudy> studies = {{"engine_test", prepare}};
+  return studies;
+}
+
+const SummaryStudy* find_summary_study(std::string_view name) {
+  static const SummaryStudy study = {"engine_test", tables};
+  return name == study.name ? &study : nullptr;
+}
+
+}  // namespace fatmc

@@ -1,0 +1,275 @@
+"""The engine with real processes: kill -9, Ctrl-C, resuming, and what it answers to wrong input.
+
+Run by ctest; FATMC_TEST_BIN is the folder with fatmc and fatmc-worker that have the study of tests/support.
+"""
+import json
+import os
+import signal
+import sqlite3
+import subprocess
+import tempfile
+import time
+import unittest
+
+BIN = os.environ["FATMC_TEST_BIN"]
+FATMC = os.path.join(BIN, "fatmc")
+WORKER = os.path.join(BIN, "fatmc-worker")
+LIMIT_S = 60
+
+# Trials of about 2.5 and 25 ms, with failures among them: long enough to strike in mid-run.
+SPEC = """
+[campaign]
+study = "engine_test"
+name = "engine"
+seed = 11
+
+[[cell]]
+name = "short"
+repetitions = 120
+work = 1000000
+diverge_every = 10
+array = 7
+
+[[cell]]
+name = "long"
+repetitions = 60
+work = 10000000
+array = 3
+"""
+
+
+def until(condition, what):
+    """Polls; the limit is there to end a broken run, not to measure one."""
+    end = time.monotonic() + LIMIT_S
+    while time.monotonic() < end:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.005)
+    raise AssertionError(f"waited in vain until {what}")
+
+
+def children(pid):
+    try:
+        with open(f"/proc/{pid}/task/{pid}/children") as file:
+            return [int(word) for word in file.read().split()]
+    except FileNotFoundError:
+        return []
+
+
+def is_alive(pid):
+    try:
+        with open(f"/proc/{pid}/stat") as file:
+            return file.read().rsplit(")", 1)[1].split()[0] not in "ZX"
+    except FileNotFoundError:
+        return False
+
+
+class Engine(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory(prefix="fatmc_engine_")
+        self.cwd = self.folder.name
+        self.started = []
+        self.write("spec.toml", SPEC)
+
+    def tearDown(self):
+        for process in self.started:
+            if process.poll() is None:
+                process.kill()
+            process.wait()
+            for stream in (process.stdout, process.stderr):
+                if stream:
+                    stream.close()
+        self.folder.cleanup()
+
+    def write(self, name, text):
+        with open(os.path.join(self.cwd, name), "w") as file:
+            file.write(text)
+
+    def path(self, name):
+        return os.path.join(self.cwd, name)
+
+    def call(self, *arguments):
+        return subprocess.run([FATMC, *arguments], cwd=self.cwd, capture_output=True, text=True, timeout=LIMIT_S)
+
+    def start(self, program, *arguments):
+        process = subprocess.Popen([program, *arguments], cwd=self.cwd, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        self.started.append(process)
+        return process
+
+    def stored(self, database):
+        try:
+            connection = sqlite3.connect(f"file:{self.path(database)}?mode=ro", uri=True)
+            try:
+                return connection.execute("SELECT count(*) FROM trial").fetchone()[0]
+            finally:
+                connection.close()
+        except sqlite3.OperationalError:
+            return 0  # not yet made
+
+    def digest(self, database):
+        result = self.call("digest", database)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stdout, r"\A[0-9a-f]{64}\n\Z")
+        return result.stdout
+
+    def reference_digest(self):
+        result = self.call("run", "spec.toml", "--db", "reference.db", "--workers", "1")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return self.digest("reference.db")
+
+    def test_one_and_two_workers_leave_the_same_digest(self):
+        reference = self.reference_digest()
+        result = self.call("run", "spec.toml", "--db", "two.db", "--workers", "2")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("180 of 180 trials: 168 ok, 12 diverged", result.stdout)
+        self.assertIn("mean of a standard normal", result.stdout)
+        self.assertEqual(self.digest("two.db"), reference)
+
+    def test_a_worker_then_the_coordinator_killed_and_resumed_leave_the_same_digest(self):
+        reference = self.reference_digest()
+        arguments = ("run", "spec.toml", "--db", "hurt.db", "--workers", "2")
+        coordinator = self.start(FATMC, *arguments)
+        until(lambda: self.stored("hurt.db") > 10, "some trials are stored")
+        victim = children(coordinator.pid)[0]
+        os.kill(victim, signal.SIGKILL)
+        before = self.stored("hurt.db")
+        until(lambda: self.stored("hurt.db") > before + 20, "work goes on without the killed worker")
+        self.assertIsNone(coordinator.poll())
+        orphans = children(coordinator.pid)
+        os.kill(coordinator.pid, signal.SIGKILL)
+        coordinator.wait()
+        self.assertLess(self.stored("hurt.db"), 180, "the coordinator was to be killed in mid-run")
+        resumed = self.call(*arguments)
+        self.assertEqual(resumed.returncode, 0, resumed.stderr)
+        self.assertIn("180 of 180 trials", resumed.stdout)
+        self.assertEqual(self.digest("hurt.db"), reference)
+        until(lambda: not any(is_alive(pid) for pid in orphans), "orphaned workers end by themselves")
+
+    def test_ctrl_c_ends_with_3_leaves_no_process_and_the_printed_command_resumes(self):
+        process = self.start(FATMC, "run", "spec.toml", "--workers", "2")
+        until(lambda: self.stored("results/engine.db") > 10, "some trials are stored")
+        workers = children(process.pid)
+        self.assertEqual(len(workers), 2)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=LIMIT_S)
+        self.assertEqual(process.returncode, 3, errors)
+        self.assertFalse(any(is_alive(pid) for pid in workers))
+        line = errors.strip().splitlines()[-1]
+        self.assertIn("go on by: fatmc run spec.toml", line)
+        stored = self.stored("results/engine.db")
+        self.assertLess(stored, 180)
+        resume = line.split("go on by: fatmc ")[1].split()
+        resumed = self.call(*resume)
+        self.assertEqual(resumed.returncode, 0, resumed.stderr)
+        self.assertEqual(self.digest("results/engine.db"), self.reference_digest())
+
+    def test_standalone_workers_outlive_their_coordinator_and_serve_its_successor(self):
+        reference = self.reference_digest()
+        endpoint = f"ipc://{self.path('socket')}"
+        arguments = ("coordinator", "spec.toml", "--bind", endpoint, "--db", "own.db")
+        worker = self.start(WORKER, "--connect", endpoint, "--jobs", "2")
+        coordinator = self.start(FATMC, *arguments)
+        until(lambda: self.stored("own.db") > 10, "some trials are stored")
+        os.kill(coordinator.pid, signal.SIGKILL)
+        coordinator.wait()
+        self.assertLess(self.stored("own.db"), 180)
+        successor = self.call(*arguments)
+        self.assertEqual(successor.returncode, 0, successor.stderr)
+        self.assertEqual(self.digest("own.db"), reference)
+        self.assertEqual(worker.wait(timeout=LIMIT_S), 0, "told that the campaign is finished")
+
+    def test_more_trials_extend_a_database_and_keep_what_it_has(self):
+        self.assertEqual(self.call("run", "spec.toml", "--db", "more.db", "--trials", "10").returncode, 0)
+        with sqlite3.connect(self.path("more.db")) as connection:
+            before = connection.execute("SELECT id, content_hash, started_us FROM trial ORDER BY id").fetchall()
+        result = self.call("run", "spec.toml", "--db", "more.db", "--trials", "15")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("30 of 30 trials", result.stdout)
+        with sqlite3.connect(self.path("more.db")) as connection:
+            after = connection.execute("SELECT id, content_hash, started_us FROM trial ORDER BY id").fetchall()
+        self.assertTrue(set(before) < set(after))
+
+    def refused(self, expected, *arguments):
+        result = self.call(*arguments)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        self.assertIn(expected, result.stderr)
+
+    def test_another_seed_spec_or_build_on_a_database_is_refused(self):
+        self.assertEqual(self.call("run", "spec.toml", "--db", "a.db", "--trials", "2").returncode, 0)
+        before = self.digest("a.db")
+        self.refused("made with seed 11, this run has 12", "run", "spec.toml", "--db", "a.db", "--seed", "12")
+        self.write("other.toml", SPEC.replace("array = 7", "array = 8"))
+        self.refused("other.toml:12: cell.1.array: is 8, the database was made with 7",
+                     "run", "other.toml", "--db", "a.db")
+        with sqlite3.connect(self.path("a.db")) as connection:
+            connection.execute("UPDATE campaign SET build = 'another'")
+        self.refused("made by build another", "run", "spec.toml", "--db", "a.db")
+        self.assertEqual(self.digest("a.db"), before)
+
+    def test_wrong_input_gets_one_line_and_leaves_nothing_behind(self):
+        self.write("key.toml", SPEC.replace("array = 7", "aray = 7"))
+        self.refused("key.toml:12: cell.aray: is not a known key", "run", "key.toml")
+        self.write("range.toml", SPEC.replace("work = 10000000", "work = -4"))
+        self.refused("range.toml:17: cell.work: -4 is out of range", "run", "range.toml")
+        self.write("study.toml", SPEC.replace("engine_test", "nothing"))
+        self.refused("study.toml:3: campaign.study: \"nothing\" is not known", "run", "study.toml")
+        self.write("text.toml", "a = = 1\n")
+        self.refused("text.toml:1", "run", "text.toml")
+        self.refused("nowhere.toml", "run", "nowhere.toml")
+        self.refused("--workers", "run", "spec.toml", "--workers", "0")
+        self.assertFalse(os.path.exists(self.path("results")))
+        self.write("notes.db", "this is no database, but somebody's notes\n" * 40)
+        self.refused("notes.db: is no database", "run", "spec.toml", "--db", "notes.db")
+        with open(self.path("notes.db")) as file:
+            self.assertTrue(file.read().startswith("this is no database"))
+        self.refused("nowhere.db: no such database", "digest", "nowhere.db")
+
+    def test_plain_tcp_is_for_the_loopback_alone(self):
+        self.refused("not on the loopback", "coordinator", "spec.toml", "--bind", "tcp://0.0.0.0:5555", "--db", "x.db")
+        self.refused("not on the loopback", "coordinator", "spec.toml", "--bind", "tcp://*:5555", "--db", "x.db")
+
+    def test_a_database_has_one_writer_at_a_time(self):
+        arguments = ("coordinator", "spec.toml", "--bind", "tcp://127.0.0.1:*", "--db", "one.db")
+        first = self.start(FATMC, *arguments)
+        until(lambda: first.stderr.readline(), "the first serves")
+        self.refused("is being written by another coordinator", *arguments)
+        first.send_signal(signal.SIGTERM)
+        self.assertEqual(first.wait(timeout=LIMIT_S), 3)
+
+    def test_a_trial_that_kills_its_worker_ends_the_run_with_1_and_keeps_the_rest(self):
+        self.write("crash.toml", SPEC.replace("array = 7", "array = 7\ncrash_at = 100"))
+        result = self.call("run", "crash.toml", "--db", "crash.db", "--workers", "1")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("without a trial done in between", result.stderr)
+        self.assertGreater(self.stored("crash.db"), 50)
+
+    def test_what_a_trial_throws_is_said_and_ends_the_run_with_1(self):
+        self.write("throw.toml", SPEC.replace("array = 7", "array = 7\nthrow_at = 3"))
+        result = self.call("run", "throw.toml", "--db", "throw.db", "--workers", "1")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("trial 3 of cell 0 threw: as the spec told it", result.stderr)
+
+    def test_sql_users_find_scalars_and_arrays_by_name(self):
+        self.assertEqual(self.call("run", "spec.toml", "--db", "q.db", "--trials", "12").returncode, 0)
+        rows = json.loads(self.call("query", "q.db", "--view", "outcomes", "--format", "json").stdout)
+        self.assertEqual(rows, [{"cell": "short", "outcome": "diverged", "trials": 1},
+                                {"cell": "short", "outcome": "ok", "trials": 11},
+                                {"cell": "long", "outcome": "ok", "trials": 12}])
+        values = self.call("query", "q.db", "--format", "csv", "--sql",
+                           "SELECT count(*) AS n FROM metrics WHERE name = 'normal' AND value IS NOT NULL").stdout
+        self.assertEqual(values, "n\n23\n")
+        arrays = json.loads(self.call("query", "q.db", "--format", "json", "--sql",
+                                      "SELECT data FROM arrays WHERE cell = 'short' AND repetition = 0 "
+                                      "AND name = 'values'").stdout)
+        self.assertEqual(len(arrays[0]["data"]), 7)
+        self.refused("--sql", "query", "q.db", "--sql", "SELECT nonsense")
+        self.refused("--sql", "query", "q.db", "--sql", "DELETE FROM trial")
+        status = self.call("status", "q.db")
+        self.assertIn("trials: 24 of 24 stored", status.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

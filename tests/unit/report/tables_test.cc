@@ -1,0 +1,66 @@
+#include "coordinator/report/tables.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "coordinator/cli/progress_line.h"
+
+namespace fatmc {
+namespace {
+
+const std::vector<TableRow> kRows = {
+    {"5-5", "95 %", "element-wise", "%", 94.5, 95.25, 94.0, 95.5, 50, "match", ""},
+    {"5-5", "99 %", "joint", "%", std::nan(""), 98.0, std::nan(""), std::nan(""), 50, "", "not printed"}};
+
+TEST(Tables, JsonHasTheKeysOfTheContractAndNullForNaN) {
+  const auto json = nlohmann::ordered_json::parse(format_tables(kRows, TableFormat::json));
+  ASSERT_EQ(json.size(), 2U);
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json[0].items()) keys.push_back(key);
+  EXPECT_EQ(keys, (std::vector<std::string>{"table", "row", "quantity", "unit", "published", "value", "low",
+                                            "high", "n", "verdict", "why"}));
+  EXPECT_EQ(json[0]["value"], 95.25);
+  EXPECT_TRUE(json[1]["published"].is_null());
+  EXPECT_EQ(json[1]["n"], 50);
+}
+
+TEST(Tables, TextIsABlockATableWithAlignedColumnsAndReasonsBelow) {
+  EXPECT_EQ(format_tables(kRows, TableFormat::text),
+            "Table 5-5\n"
+            "row   quantity      unit  published  ours  95 % interval   n  verdict\n"
+            "95 %  element-wise  %          94.5  95.2   94.0 to 95.5  50  match\n"
+            "99 %  joint         %             -  98.0              -  50  [1]\n"
+            "  [1] not printed\n");
+}
+
+TEST(Tables, MarkdownHasARuleUnderItsHeader) {
+  const std::string text = format_tables(kRows, TableFormat::markdown);
+  EXPECT_EQ(text.substr(0, 18), "### Table 5-5\n\n| r");
+  EXPECT_NE(text.find("\n|---"), std::string::npos);
+}
+
+TEST(RateMeter, ForgetsWhatIsLongPast) {
+  cli::RateMeter meter;
+  for (int second = 0; second <= 100; ++second) {
+    const double done = second <= 50 ? second * 1.0 : 50.0 + (second - 50) * 8.0;
+    meter.add(cli::RateMeter::Seconds(second), static_cast<std::uint64_t>(done));
+  }
+  EXPECT_DOUBLE_EQ(meter.per_second(), 8.0);
+  EXPECT_DOUBLE_EQ(meter.seconds_left(80), 10.0);
+}
+
+TEST(RateMeter, KnowsNothingAtFirst) {
+  EXPECT_LT(cli::RateMeter().seconds_left(10), 0.0);
+  EXPECT_EQ(cli::clock_text(-1.0), "?");
+}
+
+TEST(ClockText, IsReadAsAClock) {
+  EXPECT_EQ(cli::clock_text(6.2), "0:07");
+  EXPECT_EQ(cli::clock_text(750.0), "12:30");
+  EXPECT_EQ(cli::clock_text(11100.0), "3:05:00");
+}
+
+}  // namespace
+}  // namespace fatmc
