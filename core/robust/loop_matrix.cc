@@ -31,12 +31,15 @@ LoopMatrix loop_matrix(const Eigen::Ref<const Eigen::MatrixXcd>& plant,
                        const Eigen::Ref<const Eigen::MatrixXcd>& controller) {
   FATMC_CHECK(controller.rows() == plant.cols() && controller.cols() == plant.rows(), "controller is n_in by n_out");
   const Eigen::Index inputs = controller.rows();
-  const Eigen::MatrixXcd difference = Eigen::MatrixXcd::Identity(inputs, inputs) + controller * plant;
+  const Eigen::MatrixXcd product = controller * plant;
+  const Eigen::MatrixXcd difference = Eigen::MatrixXcd::Identity(inputs, inputs) + product;
   LoopMatrix out;
   out.x = Eigen::MatrixXcd::Zero(inputs, controller.cols());
   if (!difference.allFinite()) return out;
   const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(difference);
-  out.reciprocal_condition = lu.rcond();
+  // Against the size of what was added, so that a sum which cancels altogether is singular, too.
+  const auto norm = [](const Eigen::MatrixXcd& m) { return m.cwiseAbs().colwise().sum().maxCoeff(); };
+  out.reciprocal_condition = lu.rcond() * norm(difference) / (1.0 + norm(product));
   out.invertible = out.reciprocal_condition > 1e-14;  // NaN compares false
   if (out.invertible) out.x = lu.solve(controller);
   return out;

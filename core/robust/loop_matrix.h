@@ -13,7 +13,7 @@ namespace fatmc {
 /// X = (I + K G)⁻¹ K. `invertible` is false where I + K G is singular to working precision; X is then zero.
 struct LoopMatrix {
   Eigen::MatrixXcd x;                ///< n_in × n_out
-  double reciprocal_condition = 0.0; ///< of I + K G
+  double reciprocal_condition = 0.0;  ///< of I + K G, against the norms of what is summed
   bool invertible = false;
 };
 /// `plant` n_out × n_in, `controller` n_in × n_out.

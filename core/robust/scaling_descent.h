@@ -19,13 +19,14 @@ struct Descent {
   bool converged = false;
 };
 
-/// Solves (H + ridge) d = −g; H is positive semidefinite, singular along scalings that change nothing.
+/// Solves (H + ridge max H_ii) d = −g, the ridge raised where H is not positive definite to working precision: H is
+/// positive semidefinite, singular along scalings that change nothing.
 template <typename Hessian, typename Vector>
-Vector newton_direction(Hessian h, const Vector& g) {
+Vector newton_direction(const Hessian& h, const Vector& g, double ridge) {
   const Eigen::Index n = g.size();
   double largest = 1e-300;
   for (Eigen::Index i = 0; i < n; ++i) largest = std::max(largest, h(i, i));
-  double ridge = 1e-12 * largest;
+  ridge *= largest;
   Vector d = Vector::Zero(n);
   for (int attempt = 0; attempt < 12; ++attempt, ridge *= 30.0) {
     Hessian l = h;
@@ -69,16 +70,23 @@ Descent<In, Out> descend(const ScalingProblem<In, Out>& problem, typename Scalin
   out.best = std::move(start);
   while (out.evaluations < limit) {
     const typename Problem::Derivatives d = problem.differentiate(out.best);
-    typename Problem::Variables direction = newton_direction(d.hessian, d.gradient);
-    double slope = direction.dot(d.gradient);
+    // A step beyond e³ leaves the model's range: shorten it by a ridge first, which bends it towards the gradient.
+    constexpr double kLongest = 3.0;
+    typename Problem::Variables direction;
+    double longest = 0.0;
+    for (double ridge = 1e-12; ridge < 2.0; ridge *= 100.0) {
+      direction = newton_direction(d.hessian, d.gradient, ridge);
+      longest = 0.0;
+      for (Eigen::Index i = 0; i < direction.size(); ++i) longest = std::max(longest, std::abs(direction(i)));
+      if (longest <= kLongest) break;
+    }
+    const double slope = direction.dot(d.gradient);
     out.decrement = -0.5 * slope;
     if (!(out.decrement > 1e-16)) {
       out.converged = true;
       break;
     }
-    double longest = 0.0;
-    for (Eigen::Index i = 0; i < direction.size(); ++i) longest = std::max(longest, std::abs(direction(i)));
-    double step = longest > 3.0 ? 3.0 / longest : 1.0;
+    double step = longest > kLongest ? kLongest / longest : 1.0;
     bool moved = false;
     while (!moved && step > 1e-3 && out.evaluations < limit) {
       typename Problem::Point next = problem.evaluate(out.best.theta + step * direction, out.best.power);

@@ -183,8 +183,8 @@ class ScalingProblem {
       const double inverse = 1.0 / lambda(k);
       for (Eigen::Index j = 0; j < n_in; ++j) e_in(j) = std::norm(u(j, k));
       for (Eigen::Index i = 0; i < n_out; ++i) e_out(i) = std::norm(y(i, k)) * inverse;
-      // Eigenvalue along its own direction; for α the second derivative of G, ½(E_j G + G E_j) δ + ½ E_j G E_l, has
-      // been summed with the terms below: ½ Re(conj(u_kj) G_jl u_kl) is distributed over pairs as λ_m.
+      // Own direction of the eigenvalue, and u_kᴴ G_ab u_k: ½ Re(conj(u_kj) G_jl u_kl) + ½ δ_jl λ |u_kj|² for α,
+      // Re(conj(u_kj) N_ji y_ki) for α with β, δ |y_ki|² for β.
       const double own = exact ? -1.0 : spread - 1.0;
       for (Eigen::Index j = 0; j < n_in; ++j) {
         for (Eigen::Index l = 0; l <= j; ++l) {
@@ -216,14 +216,13 @@ class ScalingProblem {
         add_outer(c, p_in, p_out, factor);
       }
     }
-    const double mean = exact ? 1.0 : spread;  // − p F_a F_b; for p = ∞ the spread cancels and e e − F F stays
-    if (!exact) {
+    if (!exact) {  // − p F_a F_b; for p = ∞ it has cancelled with p e e
       for (Eigen::Index j = 0; j < n_in; ++j) {
-        for (Eigen::Index l = 0; l <= j; ++l) c.in(j, l) -= mean * g_in(j) * g_in(l);
-        for (Eigen::Index i = 0; i < n_out; ++i) c.cross(j, i) -= mean * g_in(j) * g_out(i);
+        for (Eigen::Index l = 0; l <= j; ++l) c.in(j, l) -= spread * g_in(j) * g_in(l);
+        for (Eigen::Index i = 0; i < n_out; ++i) c.cross(j, i) -= spread * g_in(j) * g_out(i);
       }
       for (Eigen::Index i = 0; i < n_out; ++i) {
-        for (Eigen::Index m = 0; m <= i; ++m) c.out(i, m) -= mean * g_out(i) * g_out(m);
+        for (Eigen::Index m = 0; m <= i; ++m) c.out(i, m) -= spread * g_out(i) * g_out(m);
       }
     }
     for (Eigen::Index j = 0; j < n_in; ++j) {

@@ -44,6 +44,46 @@ void keep_loops(Loop& x, Radii& w) {
   }
 }
 
+// Cold start: the optimum of the non-negative loop |X|. With Perron vectors x, z of |X| W (right, left) it is
+// s = zᵀ|X|, t = 1/x; it moves with the units of the channels, so that bad units cost nothing, and is often close.
+template <int In, int Out>
+void perron_start(const typename ScalingProblem<In, Out>::Loop& x, const typename ScalingProblem<In, Out>::Radii& w,
+                  typename ScalingProblem<In, Out>::Variables& theta) {
+  const Eigen::Index n_in = x.rows(), n_out = x.cols();
+  Eigen::Matrix<double, In, Out> size(n_in, n_out);
+  for (Eigen::Index i = 0; i < n_out; ++i) {
+    for (Eigen::Index j = 0; j < n_in; ++j) size(j, i) = std::sqrt(std::norm(x(j, i)));
+  }
+  Eigen::Matrix<double, In, In> power = size.lazyProduct(w), next(n_in, n_in);
+  for (int k = 0; k < 4; ++k) {  // 16th power
+    double largest = 1e-300;
+    for (Eigen::Index j = 0; j < n_in; ++j) {
+      for (Eigen::Index l = 0; l < n_in; ++l) largest = std::max(largest, power(j, l));
+    }
+    power *= 1.0 / largest;
+    next = power.lazyProduct(power);
+    power = next;
+  }
+  Eigen::Matrix<double, In, 1> right(n_in), left(n_in);
+  for (Eigen::Index j = 0; j < n_in; ++j) {
+    right(j) = left(j) = 0.0;
+    for (Eigen::Index l = 0; l < n_in; ++l) {
+      right(j) += power(j, l);
+      left(j) += power(l, j);
+    }
+  }
+  const auto log_of = [](double value) { return std::log(std::max(value, 1e-100)); };
+  double first = 0.0;
+  for (Eigen::Index i = 0; i < n_out; ++i) {
+    double s = 0.0;
+    for (Eigen::Index j = 0; j < n_in; ++j) s += left(j) * size(j, i);
+    if (i == 0) first = log_of(s);
+    else theta(i - 1) = log_of(s) - first;
+  }
+  first = log_of(right(0));
+  for (Eigen::Index j = 1; j < n_in; ++j) theta(n_out + j - 2) = first - log_of(right(j));
+}
+
 template <int In, int Out>
 class Solver {
  public:
@@ -129,7 +169,8 @@ class Solver {
     typename Scalings::Point point;
     bool any = false;
     while (mu > 1e-11 && out.iterations < options_.max_iterations) {
-      Descent<In, Out> stage = descend(scalings_, scalings_.evaluate(start, 1.0 / mu), 1e-4 * mu, kStageEvaluations);
+      Descent<In, Out> stage = descend(scalings_, scalings_.evaluate(start, 1.0 / mu), 1e-4 * mu,
+                                       any ? kStageEvaluations : 80);
       out.iterations += stage.evaluations + 1;
       if (stage.best.sigma2 < best_) {
         best_ = stage.best.sigma2;
@@ -205,8 +246,12 @@ SsvBounds solve(const Eigen::Ref<const Eigen::MatrixXcd>& x_in, const Eigen::Ref
   w /= w_scale;
   typename Scalings::Variables theta(n_in + n_out - 2);
   const bool warm = scaling != nullptr && scaling->log_s.size() == n_out && scaling->log_t.size() == n_in;
-  for (Eigen::Index i = 1; i < n_out; ++i) theta(i - 1) = warm ? scaling->log_s(i) - scaling->log_s(0) : 0.0;
-  for (Eigen::Index j = 1; j < n_in; ++j) theta(n_out + j - 2) = warm ? scaling->log_t(j) - scaling->log_t(0) : 0.0;
+  if (warm) {
+    for (Eigen::Index i = 1; i < n_out; ++i) theta(i - 1) = scaling->log_s(i) - scaling->log_s(0);
+    for (Eigen::Index j = 1; j < n_in; ++j) theta(n_out + j - 2) = scaling->log_t(j) - scaling->log_t(0);
+  } else {
+    perron_start<In, Out>(x, w, theta);
+  }
   typename PhaseProblem<In, Out>::Phases phases;
   Solver<In, Out> solver(x, w, options);
   out = solver.solve(theta, phases);

@@ -153,7 +153,9 @@ TEST(JudgeLine, TotalConfidenceIsZeroForANominallyUnstableEstimateAndForALowSnr)
 }
 
 TEST(JudgeLine, BiasAndIntergridErrorOnlyLowerTheConfidence) {
-  const EstimatedLine line = example_line();
+  EstimatedLine line = example_line();
+  line.sigma *= 10.0;
+  line.bias *= 10.0;
   const Eigen::MatrixXcd controller = 3.0 * kController;
   const auto p = [&](bool bias, double intergrid) {
     StabilityOptions options;
