@@ -100,6 +100,9 @@ CellCoverage collect(std::uint32_t cell, const RowSource& rows) {
     }
     out.snr.add(need(row, kInputSnr), static_cast<std::size_t>(metric(row, kInputs)));
   });
+  // A trial without an estimate has no region that could hold the truth: it counts as outside.
+  for (auto& [key, values] : out.shares) values.resize(out.trials, 0.0);
+  for (auto& [key, values] : out.cdf) values.resize(out.trials, 0.0);
   return out;
 }
 
@@ -172,6 +175,7 @@ void add_table_5_5(const CellCoverage& cell, const std::string& suffix, const st
                                                          extended ? "extended region" : "sample error");
           if (figure != nullptr) row.published = figure->value;
         }
+        if (cell.failed > 0) row.why = std::to_string(cell.failed) + " trials without an estimate count as outside";
         judge(row, 100.0 * kLevels[level], reason_for(region));
         out.push_back(std::move(row));
       }
@@ -221,7 +225,7 @@ Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& 
     const std::vector<PublishedFigure> figures = compared ? *published : std::vector<PublishedFigure>{};
     add_table_5_5(cell, suffix, figures, table_5_5);
     add_figure_5_4(cell, suffix, q, figure_5_4);
-    cell.snr.add_rows(cell.trials, suffix, figures, snr);
+    cell.snr.add_rows(cell.trials - cell.failed, suffix, figures, snr);
   }
   std::vector<TableRow> out = std::move(table_5_5);
   out.insert(out.end(), figure_5_4.begin(), figure_5_4.end());

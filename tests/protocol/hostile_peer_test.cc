@@ -57,7 +57,9 @@ class Peer {
 class Serving : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) / "hostile_peer_test";
+    // A folder of its own: ctest runs the tests of this file side by side.
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              (std::string("hostile_peer_") + testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::remove_all(folder_);
     store_.emplace(std::move(*CampaignStore::open((folder_ / "c.db").string(), spec_, "build")));
     state_.emplace(store_->plan(spec_), Welcome{spec_.identity(), spec_.tree, 0}, "build");
