@@ -144,10 +144,10 @@ std::string reason_for(Region region) {
   switch (region) {
     case Region::extended:
     case Region::extended_printed_constant:
-      return "the disc b + r_p only adds to the region without bias; print's rule rejects points nearer than b";
+      return "max(0, |e| - b) only adds to the region without bias, the printed rule also takes away";
     case Region::extended_as_printed:
     case Region::printed_constant_as_printed:
-      return "size of b: derivatives of the FAT, line spacing behind b and n_E are not printed";
+      return "no reading of b gives the four printed shares at once: campaigns/coverage/README.md";
     case Region::plain:
     case Region::sample:
       return "windows of up to 1.3 Hz on this grid and gusts that move all lines of a run together";
