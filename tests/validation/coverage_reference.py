@@ -108,7 +108,7 @@ def bias_experiment(fatmc, path):
         printed = shares((abs(error) - b) ** 2 / variance, limits)
         disc = shares(np.maximum(0, abs(error) - b) ** 2 / variance, limits)
         print(f"{name:52s} " + " ".join(f"{x:6.1f}" for x in printed) + "  |" + " ".join(f"{x:6.1f}" for x in disc) +
-              f"   median b/sigma {np.median(b / np.sqrt(variance)):.3f}")
+              "   b/sigma at 5, 50, 95 %: " + " ".join(f"{x:.2f}" for x in np.quantile(b / np.sqrt(variance), (0.05, 0.5, 0.95))))
 
     show("b = 0", np.zeros(error.shape))
     show("stored: actual offsets", a["bias"].reshape(error.shape))
@@ -116,6 +116,8 @@ def bias_experiment(fatmc, path):
         for index_distance in (False, True):
             for text, constant in (("3/35", 3 / 35), ("0.0318", 0.0318)):
                 show(f"{name}, {'line numbers' if index_distance else 'Hz'}, {text}", b_of(values, 1.0, index_distance, constant))
+    for factor in (1.0, 1.25, 1.5, 1.75, 2.0):
+        show(f"b = {factor} sigma for every element", factor * np.sqrt(variance))
     return 0
 
 
