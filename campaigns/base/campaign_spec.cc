@@ -52,17 +52,20 @@ Result<CampaignSpec> decode_campaign(const Tree& tree) {
     spec.study = table.text("study");
     spec.name = table.text("name", spec.study);
     spec.seed = static_cast<std::uint64_t>(table.integer("seed", {.low = 0}));
-    if (spec.name.find('/') != std::string::npos) table.reject("name", "holds a '/', write a plain file name");
+    if (spec.name.find('/') != std::string::npos)
+      table.reject("name", "holds a '/', write a plain file name");
     top.take(table.finish());
   }
   for (const Tree* entry : top.tables("cell")) {
     Decoder table(*entry, "cell");
     Cell cell;
     cell.name = table.text("name");
-    cell.repetitions = static_cast<std::uint64_t>(table.integer("repetitions", {.low = 1, .high = 1'000'000'000}));
+    cell.repetitions =
+        static_cast<std::uint64_t>(table.integer("repetitions", {.low = 1, .high = 1'000'000'000}));
     cell.tree = *entry;
     for (const Cell& other : spec.cells) {
-      if (other.name == cell.name) table.reject("name", "\"" + cell.name + "\" names two cells, write another name");
+      if (other.name == cell.name)
+        table.reject("name", "\"" + cell.name + "\" names two cells, write another name");
     }
     if (table.error()) top.take(fail(*table.error()));
     spec.cells.push_back(std::move(cell));

@@ -81,7 +81,8 @@ double Decoder::real(std::string_view key, RealRange range, std::optional<double
   return *number;
 }
 
-std::int64_t Decoder::integer(std::string_view key, IntegerRange range, std::optional<std::int64_t> fallback) {
+std::int64_t Decoder::integer(std::string_view key, IntegerRange range,
+                              std::optional<std::int64_t> fallback) {
   const Tree* entry = get(key, !fallback);
   if (entry == nullptr) return fallback.value_or(range.low > 0 ? range.low : 0);
   const auto* number = std::get_if<std::int64_t>(&entry->value);
@@ -156,7 +157,8 @@ std::vector<double> Decoder::reals(std::string_view key, std::size_t count, Real
   return out;
 }
 
-std::vector<std::string> Decoder::texts(std::string_view key, std::optional<std::vector<std::string>> fallback) {
+std::vector<std::string> Decoder::texts(std::string_view key,
+                                        std::optional<std::vector<std::string>> fallback) {
   const Tree* entry = get(key, !fallback);
   if (entry == nullptr) return fallback.value_or(std::vector<std::string>{});
   const auto* array = entry->array();
@@ -238,7 +240,8 @@ Status Decoder::finish() {
       if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
       std::vector<std::string> sorted = known_;
       std::sort(sorted.begin(), sorted.end());
-      error_ = Error{entry.file, entry.line, name(key), "is not a known key, the keys here are: " + join(sorted)};
+      error_ =
+          Error{entry.file, entry.line, name(key), "is not a known key, the keys here are: " + join(sorted)};
       break;
     }
   }

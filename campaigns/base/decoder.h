@@ -36,7 +36,8 @@ class Decoder {
   Decoder(const Tree& tree, std::string path);
 
   double real(std::string_view key, RealRange range = {}, std::optional<double> fallback = {});
-  std::int64_t integer(std::string_view key, IntegerRange range = {}, std::optional<std::int64_t> fallback = {});
+  std::int64_t integer(std::string_view key, IntegerRange range = {},
+                       std::optional<std::int64_t> fallback = {});
   bool boolean(std::string_view key, std::optional<bool> fallback = {});
   std::string text(std::string_view key, std::optional<std::string> fallback = {});
   /// One of `choices`.

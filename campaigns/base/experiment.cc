@@ -30,8 +30,9 @@ void decode_controller(const Tree& tree, FlightSetup& out, Decoder& top) {
 
 void decode_simulation(const Tree& tree, FlightSetup& out, Decoder& top) {
   Decoder table(tree, "simulation");
-  out.plant = table.choice("plant", {"nonlinear", "linear"}, "nonlinear") == "linear" ? FlightSetup::Plant::linear
-                                                                                       : FlightSetup::Plant::nonlinear;
+  out.plant = table.choice("plant", {"nonlinear", "linear"}, "nonlinear") == "linear"
+                  ? FlightSetup::Plant::linear
+                  : FlightSetup::Plant::nonlinear;
   out.rate_hz = table.real("rate_hz", {.low = 1.0, .high = 1000.0}, 50.0);
   out.step_s = table.real("rk4_step_s", {.low = 1e-5, .high = 0.1}, 0.02);
   out.imu_step_s = table.real("imu_step_s", {.low = 1e-5, .high = 0.1}, 0.005);
@@ -73,7 +74,8 @@ Result<Experiment> decode_experiment(const Tree& tree, const AircraftModel& mode
   Decoder top(tree, "");
   top.choice("kind", {"experiment"});
   if (const Tree* controller = top.table("controller")) decode_controller(*controller, out.flight, top);
-  if (const Tree* simulation = top.table("simulation", false)) decode_simulation(*simulation, out.flight, top);
+  if (const Tree* simulation = top.table("simulation", false))
+    decode_simulation(*simulation, out.flight, top);
   if (const Tree* environment = top.table("environment", false)) {
     Decoder table(*environment, "environment");
     out.flight.turbulence_m_s = table.real("turbulence_sigma_m_s", {.low = 0.0, .high = 20.0}, 0.0);

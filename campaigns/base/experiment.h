@@ -18,8 +18,8 @@ namespace fatmc {
 struct Excitation {
   double period_s = 0.0;
   int periods = 0;
-  std::vector<FrequencyRange> ranges;          ///< T Table 5-1
-  std::array<double, 3> amplitude_rad_s{};     ///< of every line, on p, q and r (open loop: normalised commands)
+  std::vector<FrequencyRange> ranges;       ///< T Table 5-1
+  std::array<double, 3> amplitude_rad_s{};  ///< of every line, on p, q and r (open loop: normalised commands)
   // Follows from the above and the rate.
   int period_samples = 0;
   std::vector<int> lines;

@@ -12,8 +12,8 @@
 
 namespace fatmc {
 
-/// Everything a cell needs, prepared once a process (design matrices, trim, references); const afterwards and safe
-/// to use from several threads at once.
+/// Everything a cell needs, prepared once a process (design matrices, trim, references); const afterwards and
+/// safe to use from several threads at once.
 class PreparedCell {
  public:
   virtual ~PreparedCell() = default;
@@ -35,9 +35,10 @@ struct TableRow {
   std::string unit;
   double published = 0.0;  ///< NaN where nothing is printed
   double value = 0.0;
-  double low = 0.0, high = 0.0;  ///< 95 % prediction interval behind the verdict, at the published size; NaN: none
-  std::uint64_t n = 0;           ///< trials behind `value`
-  std::string verdict;           ///< exact, match, shape, differs; "" where nothing is printed
+  double low = 0.0,
+         high = 0.0;    ///< 95 % prediction interval behind the verdict, at the published size; NaN: none
+  std::uint64_t n = 0;  ///< trials behind `value`
+  std::string verdict;  ///< exact, match, shape, differs; "" where nothing is printed
   std::string why;
 };
 

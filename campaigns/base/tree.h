@@ -1,7 +1,7 @@
 // A file of values as a tree in which every value knows where it stands.
 //
-// coordinator/input makes it from TOML; it travels to the workers inside WELCOME; studies decode it, so that a
-// wrong value is reported with its file and line wherever it is found.
+// coordinator/input makes it from TOML; it travels to the workers inside WELCOME; studies decode it, so that
+// a wrong value is reported with its file and line wherever it is found.
 #pragma once
 
 #include <cstdint>
@@ -40,8 +40,8 @@ struct Tree {
 /// "table", "array", "string", "number", "integer" or "boolean", for messages.
 std::string_view kind_name(const Tree& tree);
 
-/// Canonical text of the values alone, without files and lines and with sorted keys: equal for equal meanings.
-/// Hashing it tells whether two specs are the same.
+/// Canonical text of the values alone, without files and lines and with sorted keys: equal for equal
+/// meanings. Hashing it tells whether two specs are the same.
 std::string canonical_text(const Tree& tree);
 
 }  // namespace fatmc

@@ -8,7 +8,8 @@
 namespace fatmc {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "content hashes are defined on little-endian doubles");
+static_assert(std::endian::native == std::endian::little,
+              "content hashes are defined on little-endian doubles");
 
 // Feeds typed values to SHA-256; every variable length stands in front of its bytes.
 class Hasher {

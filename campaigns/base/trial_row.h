@@ -22,7 +22,7 @@ struct TrialRow {
   TrialKey key;
   /// "ok", or the name of an expected failure such as "diverged": counted in every denominator.
   std::string outcome = "ok";
-  std::string detail;  ///< one line on a failure; empty when ok
+  std::string detail;                                               ///< one line on a failure; empty when ok
   std::vector<std::pair<std::string, double>> metrics;              ///< scalars, by name
   std::vector<std::pair<std::string, std::vector<double>>> arrays;  ///< per line, per element ...; by name
 
@@ -41,7 +41,8 @@ Sha256 sha256(std::string_view bytes);
 
 std::string hex(const Sha256& hash);
 
-/// The same rows give the same digest in whatever order they were computed: feed them in the order of their keys.
+/// The same rows give the same digest in whatever order they were computed: feed them in the order of their
+/// keys.
 class Digest {
  public:
   Digest();

@@ -58,7 +58,8 @@ Result<CoverageCell> decode_cell(const CampaignSpec& spec, std::uint32_t cell) {
   auto decoded = decode_experiment(*experiment, *aircraft);
   if (!decoded) return fail(decoded.error());
   out.experiment = std::move(*decoded);
-  if (Status status = apply_overrides(spec.cells.at(cell).tree, out.experiment); !status) return fail(status.error());
+  if (Status status = apply_overrides(spec.cells.at(cell).tree, out.experiment); !status)
+    return fail(status.error());
   if (estimator != nullptr) {
     if (Status status = decode_estimator(*estimator, out); !status) return fail(status.error());
   }

@@ -51,11 +51,12 @@ double normalised_square(const TrialErrors& trial, Region region, std::size_t in
   return distance * distance / variance;
 }
 
-TrialCoverage trial_coverage(const TrialErrors& trial, Region region, double level, std::size_t elements_per_line,
-                             int degrees_of_freedom) {
+TrialCoverage trial_coverage(const TrialErrors& trial, Region region, double level,
+                             std::size_t elements_per_line, int degrees_of_freedom) {
   const double limit = f_quantile_2_2q(level, degrees_of_freedom);
   const double elements = static_cast<double>(elements_per_line);
-  const double bonferroni_limit = f_quantile_2_2q(bonferroni_level(level, static_cast<int>(elements_per_line)), degrees_of_freedom);
+  const double bonferroni_limit =
+      f_quantile_2_2q(bonferroni_level(level, static_cast<int>(elements_per_line)), degrees_of_freedom);
   const std::size_t lines = trial.error.size() / elements_per_line;
   std::size_t inside = 0, lines_inside = 0, lines_inside_bonferroni = 0;
   for (std::size_t line = 0; line < lines; ++line) {

@@ -1,10 +1,9 @@
 #include "campaigns/coverage/snr_summary.h"
 
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <limits>
-
-#include <boost/math/distributions/normal.hpp>
 
 #include "campaigns/coverage/summary.h"
 #include "core/stats/empirical.h"
@@ -20,9 +19,9 @@ struct Estimate {
   double value = kNone, low = kNone, high = kNone;
 };
 
-// Smallest of the minima of 50 runs: the mean of that over blocks of 50, since a smallest value falls with the number of
-// runs. The interval is that of the smallest of 50 draws from a normal law with the mean and the scatter of the runs'
-// minima (in dB): P(min <= x) = 1 - (1 - Φ)^50.
+// Smallest of the minima of 50 runs: the mean of that over blocks of 50, since a smallest value falls with
+// the number of runs. The interval is that of the smallest of 50 draws from a normal law with the mean and
+// the scatter of the runs' minima (in dB): P(min <= x) = 1 - (1 - Φ)^50.
 Estimate smallest(const std::vector<double>& minima) {
   constexpr std::size_t kBlock = kPublishedRepetitions;
   std::vector<double> blocks;
@@ -69,7 +68,8 @@ void SnrSummary::add_rows(std::uint64_t trials, const std::string& suffix,
                           const std::vector<PublishedFigure>& published, std::vector<TableRow>& out) const {
   if (runs_.empty()) return;
   const std::size_t lines = runs_.front().size() / inputs_;
-  const auto append = [&](std::size_t input, const std::string& quantity, const std::string& unit, Estimate estimate) {
+  const auto append = [&](std::size_t input, const std::string& quantity, const std::string& unit,
+                          Estimate estimate) {
     TableRow row;
     row.table = "Section 5.2.3";
     const std::string name = inputs_ == 3 ? kInputNames[input] : "input " + std::to_string(input + 1);
@@ -85,8 +85,9 @@ void SnrSummary::add_rows(std::uint64_t trials, const std::string& suffix,
       row.published = figure->value;
       const bool inside = row.published >= row.low && row.published <= row.high;
       row.verdict = inside ? "match" : "shape";
-      if (!inside) row.why = "published " + std::string(row.published > row.value ? "higher" : "lower") +
-                             "; aerodynamic derivatives and excitation amplitude are not printed";
+      if (!inside)
+        row.why = "published " + std::string(row.published > row.value ? "higher" : "lower") +
+                  "; aerodynamic derivatives and excitation amplitude are not printed";
     }
     out.push_back(std::move(row));
   };
@@ -113,13 +114,15 @@ void SnrSummary::add_rows(std::uint64_t trials, const std::string& suffix,
     }
     append(input, "smallest median", "dB", low);
     append(input, "largest median", "dB", high);
-    // Runs are independent: the predictive law of a share of 50 from n runs, by Wilson's interval widened to 50.
+    // Runs are independent: the predictive law of a share of 50 from n runs, by Wilson's interval widened
+    // to 50.
     const std::uint64_t n = runs_.size();
     const double effective = 1.0 / (1.0 / static_cast<double>(n) + 1.0 / kPublishedRepetitions);
     const double share = below / static_cast<double>(n);
     const auto predicted = proportion_interval(static_cast<std::uint64_t>(std::lround(share * effective)),
                                                static_cast<std::uint64_t>(std::lround(effective)));
-    append(input, "runs with a line below 20 dB", "%", {100.0 * share, 100.0 * predicted.low, 100.0 * predicted.high});
+    append(input, "runs with a line below 20 dB", "%",
+           {100.0 * share, 100.0 * predicted.low, 100.0 * predicted.high});
   }
 }
 

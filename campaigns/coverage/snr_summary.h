@@ -15,9 +15,10 @@ class SnrSummary {
   /// One run: SNR in dB, line by line, inside a line input by input.
   void add(const std::vector<double>& snr_db, std::size_t inputs);
 
-  /// Rows of table "Section 5.2.3": smallest value, smallest and largest median over the lines, share of runs below 20 dB.
-  void add_rows(std::uint64_t trials, const std::string& suffix, const std::vector<PublishedFigure>& published,
-                std::vector<TableRow>& out) const;
+  /// Rows of table "Section 5.2.3": smallest value, smallest and largest median over the lines, share of runs
+  /// below 20 dB.
+  void add_rows(std::uint64_t trials, const std::string& suffix,
+                const std::vector<PublishedFigure>& published, std::vector<TableRow>& out) const;
 
  private:
   std::size_t inputs_ = 0;

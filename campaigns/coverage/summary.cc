@@ -49,8 +49,9 @@ TrialErrors read_errors(const TrialRow& row) {
 // What a pass over the rows of a cell collects: one value a run for every figure of the table.
 struct CellCoverage {
   std::uint64_t trials = 0, failed = 0;
-  std::map<std::tuple<Region, std::size_t, int>, std::vector<double>> shares;  // region, level, element|joint|bonferroni
-  std::map<std::pair<Region, std::size_t>, std::vector<double>> cdf;           // region, abscissa
+  std::map<std::tuple<Region, std::size_t, int>, std::vector<double>>
+      shares;  // region, level, element|joint|bonferroni
+  std::map<std::pair<Region, std::size_t>, std::vector<double>> cdf;  // region, abscissa
   SnrSummary snr;
 };
 
@@ -78,7 +79,8 @@ CellCoverage collect(std::uint32_t cell, const RowSource& rows) {
   rows(cell, [&](const TrialRow& row) {
     if (row.outcome != "ok") return;
     TrialErrors errors = read_errors(row);
-    for (std::size_t i = 0; i < mean.size(); ++i) errors.sample_error.push_back((errors.error[i] - mean[i]) * inflate);
+    for (std::size_t i = 0; i < mean.size(); ++i)
+      errors.sample_error.push_back((errors.error[i] - mean[i]) * inflate);
     const auto elements = static_cast<std::size_t>(metric(row, kElements));
     const int q = static_cast<int>(metric(row, kDegreesOfFreedom));
     for (const Region region : kRegions) {
@@ -95,7 +97,8 @@ CellCoverage collect(std::uint32_t cell, const RowSource& rows) {
         for (std::size_t x = 0; x < kCdfAbscissae.size(); ++x) below[x] += square <= kCdfAbscissae[x] ? 1 : 0;
       }
       for (std::size_t x = 0; x < kCdfAbscissae.size(); ++x) {
-        out.cdf[{region, x}].push_back(static_cast<double>(below[x]) / static_cast<double>(errors.error.size()));
+        out.cdf[{region, x}].push_back(static_cast<double>(below[x]) /
+                                       static_cast<double>(errors.error.size()));
       }
     }
     out.snr.add(need(row, kInputSnr), static_cast<std::size_t>(metric(row, kInputs)));
@@ -106,8 +109,8 @@ CellCoverage collect(std::uint32_t cell, const RowSource& rows) {
   return out;
 }
 
-// Verdict of a published figure against ours: `match` inside the interval, `shape` where both lie on the same side of
-// the nominal level, `differs` otherwise.
+// Verdict of a published figure against ours: `match` inside the interval, `shape` where both lie on the same
+// side of the nominal level, `differs` otherwise.
 void judge(TableRow& row, double nominal, const std::string& reason) {
   if (std::isnan(row.published)) return;
   if (row.published >= row.low && row.published <= row.high) {
@@ -155,9 +158,10 @@ std::string reason_for(Region region) {
   FATMC_CHECK(false, "not a region");
 }
 
-void add_table_5_5(const CellCoverage& cell, const std::string& suffix, const std::vector<PublishedFigure>& published,
-                   std::vector<TableRow>& out) {
-  static constexpr std::array kScopes = {"", ", all elements of a line", ", all elements of a line, Bonferroni"};
+void add_table_5_5(const CellCoverage& cell, const std::string& suffix,
+                   const std::vector<PublishedFigure>& published, std::vector<TableRow>& out) {
+  static constexpr std::array kScopes = {"", ", all elements of a line",
+                                         ", all elements of a line, Bonferroni"};
   for (std::size_t level = 0; level < kLevels.size(); ++level) {
     for (const Region region : kRegions) {
       for (int scope = 0; scope < 3; ++scope) {
@@ -175,7 +179,8 @@ void add_table_5_5(const CellCoverage& cell, const std::string& suffix, const st
                                                          extended ? "extended region" : "sample error");
           if (figure != nullptr) row.published = figure->value;
         }
-        if (cell.failed > 0) row.why = std::to_string(cell.failed) + " trials without an estimate count as outside";
+        if (cell.failed > 0)
+          row.why = std::to_string(cell.failed) + " trials without an estimate count as outside";
         judge(row, 100.0 * kLevels[level], reason_for(region));
         out.push_back(std::move(row));
       }

@@ -1,4 +1,5 @@
-// Table 5-5, the distributions of Fig. 5-4 and the input SNR of section 5.2.3, from the rows of a coverage campaign.
+// Table 5-5, the distributions of Fig. 5-4 and the input SNR of section 5.2.3, from the rows of a coverage
+// campaign.
 #pragma once
 
 #include "campaigns/base/study.h"

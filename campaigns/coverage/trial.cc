@@ -29,7 +29,8 @@ class CoverageTrials final : public PreparedCell {
  public:
   CoverageTrials(CoverageCell cell, Flight flight, LpmGrid grid, TrialSeed seed, TrialKey key)
       : cell_(std::move(cell)), flight_(std::move(flight)), grid_(std::move(grid)), seed_(seed), key_(key) {
-    for (int k = 0; k < grid_.line_count(); ++k) truth_.push_back(flight_.sampled().response(grid_.frequency_hz(k)));
+    for (int k = 0; k < grid_.line_count(); ++k)
+      truth_.push_back(flight_.sampled().response(grid_.frequency_hz(k)));
   }
 
   TrialRow run(std::uint64_t repetition) const override {
@@ -72,7 +73,8 @@ class CoverageTrials final : public PreparedCell {
     for (const LineStatus status : frm.status) {
       if (status == LineStatus::ok) continue;
       row.outcome = "singular";
-      row.detail = status == LineStatus::singular_input ? "G_ur has no inverse" : "the references do not span all inputs";
+      row.detail = status == LineStatus::singular_input ? "G_ur has no inverse"
+                                                        : "the references do not span all inputs";
       return;
     }
     const double mean_speed = record.auxiliary.col(2).mean();
@@ -81,7 +83,8 @@ class CoverageTrials final : public PreparedCell {
     const MatrixStack<double> bias = interpolation_bias(grid_, frm, BiasConstant::exact_offsets);
     // No printed constant for this order: the limit stands in its place.
     const MatrixStack<double> printed = interpolation_bias(
-        grid_, frm, printed_bias_constant(cell_.estimator.order) ? BiasConstant::printed : BiasConstant::limit);
+        grid_, frm,
+        printed_bias_constant(cell_.estimator.order) ? BiasConstant::printed : BiasConstant::limit);
     store(frm, bias, printed, row);
     row.metrics.emplace_back("mean_speed_m_s", mean_speed);
   }
@@ -100,14 +103,16 @@ class CoverageTrials final : public PreparedCell {
           b_printed.push_back(printed[k](i, j));
         }
       }
-      for (int j = 0; j < kAxes; ++j) snr.push_back(20.0 * std::log10(std::max(frm.input_snr[k](j, 0), 1e-15)));
+      for (int j = 0; j < kAxes; ++j)
+        snr.push_back(20.0 * std::log10(std::max(frm.input_snr[k](j, 0), 1e-15)));
     }
     row.metrics.emplace_back(kDegreesOfFreedom, frm.q);
     row.metrics.emplace_back(kElements, kAxes * kAxes);
     row.metrics.emplace_back(kInputs, kAxes);
     for (int j = 0; j < kAxes; ++j) {
       double low = std::numeric_limits<double>::infinity();
-      for (std::size_t k = 0; k < snr.size(); k += kAxes) low = std::min(low, snr[k + static_cast<std::size_t>(j)]);
+      for (std::size_t k = 0; k < snr.size(); k += kAxes)
+        low = std::min(low, snr[k + static_cast<std::size_t>(j)]);
       row.metrics.emplace_back(std::string("smallest_input_snr_db_") + kInputSuffix[j], low);
     }
     row.arrays.emplace_back(kErrorReal, std::move(re));
@@ -123,7 +128,8 @@ class CoverageTrials final : public PreparedCell {
       row.metrics.emplace_back(std::string("input_rms_") + kInputSuffix[axis], record.input_rms(axis));
       row.metrics.emplace_back(std::string("share_at_position_limit_") + kServoSuffix[axis],
                                record.at_position_limit(axis));
-      row.metrics.emplace_back(std::string("share_at_rate_limit_") + kServoSuffix[axis], record.at_rate_limit(axis));
+      row.metrics.emplace_back(std::string("share_at_rate_limit_") + kServoSuffix[axis],
+                               record.at_rate_limit(axis));
     }
     const auto flown = record.auxiliary.topRows(record.samples);
     if (record.samples > 0) {
@@ -152,9 +158,9 @@ Result<std::unique_ptr<PreparedCell>> prepare(const CampaignSpec& spec, std::uin
   auto flight = Flight::prepare(cell->aircraft, cell->experiment.flight);
   if (!flight) return fail(place("experiment", flight.error()));
   const Excitation& excitation = cell->experiment.excitation;
-  auto grid = LpmGrid::create({excitation.lines, excitation.period_samples, excitation.periods,
-                               cell->experiment.flight.rate_hz},
-                              cell->estimator, kAxes);
+  auto grid = LpmGrid::create(
+      {excitation.lines, excitation.period_samples, excitation.periods, cell->experiment.flight.rate_hz},
+      cell->estimator, kAxes);
   if (!grid) return fail(place("estimator", grid.error()));
   const TrialKey key{index, 0};
   return std::make_unique<CoverageTrials>(std::move(*cell), std::move(*flight), std::move(*grid),

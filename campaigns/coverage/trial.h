@@ -1,4 +1,5 @@
-// One trial of the coverage study: fly, estimate, compare with the sampled response of the very model that flew.
+// One trial of the coverage study: fly, estimate, compare with the sampled response of the very model that
+// flew.
 #pragma once
 
 #include "campaigns/base/study.h"

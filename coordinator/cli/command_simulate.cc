@@ -50,12 +50,14 @@ void write_samples(const std::string& path, const Flown& flown) {
   const FlightRecord& record = flown.record;
   const Eigen::Index n = record.samples;
   Eigen::MatrixXd columns(n, 13);
-  for (Eigen::Index i = 0; i < n; ++i) columns(i, 0) = static_cast<double>(i) / flown.experiment.flight.rate_hz;
+  for (Eigen::Index i = 0; i < n; ++i)
+    columns(i, 0) = static_cast<double>(i) / flown.experiment.flight.rate_hz;
   columns.middleCols(1, 3) = record.reference.topRows(n);
   columns.middleCols(4, 3) = record.input.topRows(n);
   columns.middleCols(7, 3) = record.output.topRows(n);
   columns.middleCols(10, 3) = record.auxiliary.topRows(n);
-  write_columns(path, {"t", "r_p", "r_q", "r_r", "xi_c", "eta_c", "zeta_c", "p", "q", "r", "phi", "theta", "V"},
+  write_columns(path,
+                {"t", "r_p", "r_q", "r_r", "xi_c", "eta_c", "zeta_c", "p", "q", "r", "phi", "theta", "V"},
                 columns);
 }
 
@@ -87,7 +89,8 @@ std::string record_toml(const Flown& flown) {
 Exit run(const Options& options) {
   const std::string toml_path = record_toml_beside(options.record);
   if (toml_path == options.record) {
-    return report(Error{options.record, 0, "-o", "ends in .toml, name a CSV file: its roles go into the TOML beside it"});
+    return report(Error{options.record, 0, "-o",
+                        "ends in .toml, name a CSV file: its roles go into the TOML beside it"});
   }
   for (const std::string& input : {options.model, options.experiment}) {
     if (std::filesystem::exists(toml_path) && std::filesystem::equivalent(input, toml_path)) {
@@ -127,11 +130,15 @@ void add_simulate_command(CLI::App& app, Exit& exit) {
   CLI::App* command = app.add_subcommand("simulate", "fly one experiment and write it as a record");
   command->add_option("MODEL", options->model, "aircraft (TOML)")->required();
   command->add_option("EXPERIMENT", options->experiment, "experiment (TOML)")->required();
-  command->add_option("--seed", options->seed, "seed of excitation, turbulence and sensor noise")->capture_default_str();
-  command->add_option("--repetition", options->repetition, "another draw of the same seed")->capture_default_str();
-  command->add_option("-o,--output", options->record, "RECORD.csv; RECORD.toml is written beside it")->required();
+  command->add_option("--seed", options->seed, "seed of excitation, turbulence and sensor noise")
+      ->capture_default_str();
+  command->add_option("--repetition", options->repetition, "another draw of the same seed")
+      ->capture_default_str();
+  command->add_option("-o,--output", options->record, "RECORD.csv; RECORD.toml is written beside it")
+      ->required();
   command->footer(
-      "Example: fatmc simulate campaigns/models/fat.toml campaigns/experiments/chapter5.toml --seed 1 -o flight.csv");
+      "Example: fatmc simulate campaigns/models/fat.toml campaigns/experiments/chapter5.toml --seed 1 -o "
+      "flight.csv");
   command->callback([options, &exit] { exit = run(*options); });
 }
 

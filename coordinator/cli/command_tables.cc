@@ -26,7 +26,8 @@ Result<std::vector<std::string>> last_databases() {
   for (std::string line; std::getline(in, line);) {
     if (!line.empty()) out.push_back(line);
   }
-  if (out.empty()) return fail(Error{"results/last", 0, "", "names no database: name one, or `fatmc run` a campaign first"});
+  if (out.empty())
+    return fail(Error{"results/last", 0, "", "names no database: name one, or `fatmc run` a campaign first"});
   return out;
 }
 
@@ -75,7 +76,8 @@ Exit run(const Options& options) {
 void add_tables_command(CLI::App& app, Exit& exit) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("tables", "published figures beside ours, from databases");
-  command->add_option("DB", options->databases, "databases; without any, those of the last run (results/last)");
+  command->add_option("DB", options->databases,
+                      "databases; without any, those of the last run (results/last)");
   command->add_option("--only", options->only, "one table, for instance 5-5");
   command->add_option("--format", options->format, "text, markdown or json")
       ->check(CLI::IsMember({"text", "markdown", "json"}))

@@ -1,10 +1,11 @@
 #include "coordinator/input/toml_file.h"
 
+#include <toml++/toml.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <toml++/toml.h>
 
 namespace fatmc {
 namespace {
@@ -52,9 +53,7 @@ Result<Tree> convert(const toml::node& node, const std::string& file) {
 }
 
 // Keys whose string is the name of a file to put in its place.
-bool names_file(std::string_view key) {
-  return key == "model" || key == "experiment" || key == "published";
-}
+bool names_file(std::string_view key) { return key == "model" || key == "experiment" || key == "published"; }
 
 Status resolve(Tree& tree, int depth);
 
@@ -64,8 +63,9 @@ Status resolve_entry(const std::string& key, Tree& entry, int depth) {
   const auto path = std::filesystem::path(entry.file).parent_path() / *name;
   if (depth > 8) return fail(Error{entry.file, entry.line, key, "files name each other in a circle"});
   if (!std::filesystem::exists(path)) {
-    return fail(Error{entry.file, entry.line, key,
-                      "no file \"" + path.lexically_normal().string() + "\", write a path relative to this file"});
+    return fail(
+        Error{entry.file, entry.line, key,
+              "no file \"" + path.lexically_normal().string() + "\", write a path relative to this file"});
   }
   Result<Tree> file = read_toml(path.lexically_normal().string());
   if (!file) return fail(file.error());

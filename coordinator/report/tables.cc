@@ -30,11 +30,12 @@ std::string interval(const TableRow& row) {
 
 // Characters, not bytes, of UTF-8.
 std::size_t width(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-std::string join_line(const Line& cells, const std::array<std::size_t, kColumns>& widths, TableFormat format) {
+std::string join_line(const Line& cells, const std::array<std::size_t, kColumns>& widths,
+                      TableFormat format) {
   const bool markdown = format == TableFormat::markdown;
   std::string out = markdown ? "| " : "";
   for (std::size_t i = 0; i < kColumns; ++i) {
@@ -70,7 +71,8 @@ std::string format_table(const std::vector<TableRow>& rows, TableFormat format) 
     }
     const bool repeated = above != nullptr && above->row == row.row && !markdown;
     lines.push_back({repeated ? "" : row.row, row.quantity, row.unit, number(row.published, row.unit),
-                     number(row.value, row.unit), interval(row), row.n > 0 ? std::to_string(row.n) : "-", verdict});
+                     number(row.value, row.unit), interval(row), row.n > 0 ? std::to_string(row.n) : "-",
+                     verdict});
     above = &row;
   }
   std::array<std::size_t, kColumns> widths{};
@@ -79,21 +81,26 @@ std::string format_table(const std::vector<TableRow>& rows, TableFormat format) 
   }
   // "Table 5-5", but "Fig. 5-4" and "Section 5.2.3" speak for themselves.
   const std::string& name = rows.front().table;
-  const bool bare = !name.empty() && std::string_view("0123456789ABC").find(name.front()) != std::string_view::npos;
-  std::string out = (markdown ? "### " : "") + std::string(bare ? "Table " : "") + name + (markdown ? "\n\n" : "\n");
+  const bool bare =
+      !name.empty() && std::string_view("0123456789ABC").find(name.front()) != std::string_view::npos;
+  std::string out =
+      (markdown ? "### " : "") + std::string(bare ? "Table " : "") + name + (markdown ? "\n\n" : "\n");
   for (std::size_t i = 0; i < lines.size(); ++i) {
     out += join_line(lines[i], widths, format);
     if (i == 0 && markdown) out += rule(widths);
   }
   if (markdown && !reasons.empty()) out += "\n";
   for (std::size_t i = 0; i < reasons.size(); ++i) {
-    out += (markdown ? "" : "  ") + ("[" + std::to_string(i + 1) + "] ") + reasons[i] + (markdown ? "  \n" : "\n");
+    out += (markdown ? "" : "  ") + ("[" + std::to_string(i + 1) + "] ") + reasons[i] +
+           (markdown ? "  \n" : "\n");
   }
   return out;
 }
 
 std::string format_json(const std::vector<TableRow>& rows) {
-  const auto real = [](double value) { return std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr; };
+  const auto real = [](double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr;
+  };
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
   for (const TableRow& row : rows) {
     out.push_back({{"table", row.table},
@@ -121,7 +128,8 @@ std::string format_tables(const std::vector<TableRow>& rows, TableFormat format)
     tables.back().push_back(row);
   }
   std::string out;
-  for (const std::vector<TableRow>& table : tables) out += (out.empty() ? "" : "\n") + format_table(table, format);
+  for (const std::vector<TableRow>& table : tables)
+    out += (out.empty() ? "" : "\n") + format_table(table, format);
   return out;
 }
 

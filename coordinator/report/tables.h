@@ -10,8 +10,9 @@ namespace fatmc {
 
 enum class TableFormat { text, markdown, json };
 
-/// JSON: a list of {"table","row","quantity","unit","published","value","low","high","n","verdict","why"}, null for
-/// NaN. The others: a block a table (rows of one table stand together), columns aligned, "-" for NaN, reasons below.
+/// JSON: a list of {"table","row","quantity","unit","published","value","low","high","n","verdict","why"},
+/// null for NaN. The others: a block a table (rows of one table stand together), columns aligned, "-" for
+/// NaN, reasons below.
 std::string format_tables(const std::vector<TableRow>& rows, TableFormat format);
 
 /// The same, to standard output.

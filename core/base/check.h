@@ -7,7 +7,7 @@ namespace fatmc {
 
 }  // namespace fatmc
 
-#define FATMC_CHECK(condition, why)                                                      \
-  do {                                                                                   \
-    if (!(condition)) ::fatmc::invariant_broken(#condition, __FILE__, __LINE__, (why));  \
+#define FATMC_CHECK(condition, why)                                                     \
+  do {                                                                                  \
+    if (!(condition)) ::fatmc::invariant_broken(#condition, __FILE__, __LINE__, (why)); \
   } while (false)

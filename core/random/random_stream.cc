@@ -7,7 +7,7 @@
 namespace fatmc {
 
 std::array<std::uint64_t, 4> philox_block(const std::array<std::uint64_t, 4>& counter,
-                                        const std::array<std::uint64_t, 2>& key) {
+                                          const std::array<std::uint64_t, 2>& key) {
   r123::Philox4x64::ctr_type c;
   r123::Philox4x64::key_type k;
   for (unsigned i = 0; i < 4; ++i) c[i] = counter[i];

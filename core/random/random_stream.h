@@ -3,8 +3,8 @@
 // A stream is Philox4x64-10 (Salmon et al. 2011) with
 //   key     = (seed, stream)                 stream: hash of a name such as "turbulence"
 //   counter = (block, repetition, cell, study)
-// so that one draw is fixed by (seed, stream, trial, position in the stream): the number of workers, the order
-// of trials and other streams cannot change it, and extending a cell moves nothing.
+// so that one draw is fixed by (seed, stream, trial, position in the stream): the number of workers, the
+// order of trials and other streams cannot change it, and extending a cell moves nothing.
 #pragma once
 
 #include <array>
@@ -64,6 +64,6 @@ class RandomStream {
 
 /// The generator itself, for known-answer tests: Philox4x64-10 of Random123.
 std::array<std::uint64_t, 4> philox_block(const std::array<std::uint64_t, 4>& counter,
-                                        const std::array<std::uint64_t, 2>& key);
+                                          const std::array<std::uint64_t, 2>& key);
 
 }  // namespace fatmc

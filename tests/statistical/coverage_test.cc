@@ -1,6 +1,6 @@
-// The law of the confidence regions where theory says that it holds: linear FAT, gusts, uniform grid of 0.005 Hz from
-// 0.285 to 2.89 Hz, 500 runs. Bar: 0.5 points at each level. Table 5-1's coarse windows are reported by the campaign
-// campaigns/coverage/theory.toml, not tested here: nothing exact is known of them.
+// The law of the confidence regions where theory says that it holds: linear FAT, gusts, uniform grid of 0.005
+// Hz from 0.285 to 2.89 Hz, 500 runs. Bar: 0.5 points at each level. Table 5-1's coarse windows are reported
+// by the campaign campaigns/coverage/theory.toml, not tested here: nothing exact is known of them.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -24,9 +24,10 @@ TEST(Coverage, OnAUniformGridTheErrorAgainstTheSampleMeanHoldsItsLevels) {
   ASSERT_TRUE(cell) << cell.error().text();
   std::vector<TrialRow> rows;
   for (std::uint64_t repetition = 0; repetition < 500; ++repetition) rows.push_back((*cell)->run(repetition));
-  const auto tables = coverage::tables(*spec, [&](std::uint32_t, const std::function<void(const TrialRow&)>& visit) {
-    for (const TrialRow& row : rows) visit(row);
-  });
+  const auto tables =
+      coverage::tables(*spec, [&](std::uint32_t, const std::function<void(const TrialRow&)>& visit) {
+        for (const TrialRow& row : rows) visit(row);
+      });
   ASSERT_TRUE(tables);
   int checked = 0;
   for (const TableRow& row : *tables) {

@@ -1,6 +1,6 @@
-// T 3.2.4: is 0.02 s short enough for the integration? Fifty records of the chapter 5 experiment, flown with steps of
-// 0.02 s and of 0.005 s; commands, gusts and their random numbers are the same. The statement under test: no element of
-// the mean response leaves its 95 % interval.
+// T 3.2.4: is 0.02 s short enough for the integration? Fifty records of the chapter 5 experiment, flown with
+// steps of 0.02 s and of 0.005 s; commands, gusts and their random numbers are the same. The statement under
+// test: no element of the mean response leaves its 95 % interval.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,8 @@ MeanResponse fly_fifty(const Aircraft& aircraft, Experiment experiment, double s
   const auto flight = Flight::prepare(aircraft, experiment.flight);
   EXPECT_TRUE(flight) << flight.error().text();
   const Excitation& excitation = experiment.excitation;
-  const auto grid = LpmGrid::create({excitation.lines, excitation.period_samples, excitation.periods, 50.0}, {}, 3);
+  const auto grid =
+      LpmGrid::create({excitation.lines, excitation.period_samples, excitation.periods, 50.0}, {}, 3);
   FastLpm estimator(*grid, 3);
   FlightRecord record;
   std::vector<std::vector<std::complex<double>>> runs;
@@ -81,8 +82,8 @@ TEST(StepSize, AQuarterOfTheStepMovesNoElementOfTheMeanResponseOutsideItsInterva
     outside += moved > limit ? 1 : 0;
   }
   RecordProperty("largest_move_over_interval", std::to_string(largest / limit));
-  EXPECT_EQ(outside, 0U) << "largest move: " << largest / limit << " of the interval's radius, " << outside << " of "
-                         << coarse.mean.size() << " elements outside";
+  EXPECT_EQ(outside, 0U) << "largest move: " << largest / limit << " of the interval's radius, " << outside
+                         << " of " << coarse.mean.size() << " elements outside";
 }
 
 }  // namespace

@@ -36,8 +36,7 @@ TEST_F(TomlFile, AnUnknownKeyIsReportedWithItsLineAndTheKnownKeys) {
   EXPECT_EQ(wing.real("span_m", {.low = 0.0, .high = 100.0}), 5.0);
   const Status status = wing.finish();
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().text(),
-            path_ + ":3: wing.spam_m: is not a known key, the keys here are: span_m");
+  EXPECT_EQ(status.error().text(), path_ + ":3: wing.spam_m: is not a known key, the keys here are: span_m");
 }
 
 TEST_F(TomlFile, AValueOutOfRangeIsReportedWithTheAllowedValues) {
@@ -45,8 +44,7 @@ TEST_F(TomlFile, AValueOutOfRangeIsReportedWithTheAllowedValues) {
   Decoder top(*tree, "");
   top.real("span_m", {.low = 0.0, .high = 100.0});
   ASSERT_FALSE(top.finish());
-  EXPECT_EQ(top.error()->text(),
-            path_ + ":1: span_m: -1 is out of range, write a value between 0 and 100");
+  EXPECT_EQ(top.error()->text(), path_ + ":1: span_m: -1 is out of range, write a value between 0 and 100");
 }
 
 TEST_F(TomlFile, AWrongTypeIsReported) {

@@ -63,8 +63,9 @@ TEST(Regions, JointShareOfNineIndependentElementsIsTheNinthPower) {
   expect_mean(result.bonferroni, std::pow(1.0 - 0.05 / 9.0, 9));
 }
 
-// With b = 2σ and no bias in truth, P((|e| − 2σ)² <= x σ̂²): the rule as printed loses estimates close to the truth. The
-// value is from numerical integration over |e| and σ̂ by scipy (tests/validation/regions_reference.py prints it).
+// With b = 2σ and no bias in truth, P((|e| − 2σ)² <= x σ̂²): the rule as printed loses estimates close to the
+// truth. The value is from numerical integration over |e| and σ̂ by scipy
+// (tests/validation/regions_reference.py prints it).
 TEST(Regions, TheRuleAsPrintedRejectsEstimatesNearTheTruth) {
   TrialErrors exact;
   exact.error = {0.0};

@@ -42,7 +42,9 @@ TEST(CoverageTrial, HoldsAllLinesAndElements) {
 
 TEST(CoverageTrial, AFlightThatLeavesTheModelIsAnOutcomeOfItsRow) {
   CampaignSpec spec = shipped_spec();
-  at(spec.tree, {"experiment", "excitation"}).set("amplitude_rad_s", Tree{Tree::Array{{Tree{2.0, {}, 0}, Tree{2.0, {}, 0}, Tree{2.0, {}, 0}}}, {}, 0});
+  at(spec.tree, {"experiment", "excitation"})
+      .set("amplitude_rad_s",
+           Tree{Tree::Array{{Tree{2.0, {}, 0}, Tree{2.0, {}, 0}, Tree{2.0, {}, 0}}}, {}, 0});
   const auto cell = kTrialStudy.prepare(spec, 0);
   ASSERT_TRUE(cell) << cell.error().text();
   const TrialRow row = (*cell)->run(0);
@@ -50,7 +52,8 @@ TEST(CoverageTrial, AFlightThatLeavesTheModelIsAnOutcomeOfItsRow) {
   EXPECT_NE(row.detail.find(" at "), std::string::npos);
   EXPECT_EQ(row.array(kErrorReal), nullptr);
   // The table of such trials alone is empty, not a table of zeros.
-  const auto tables_of = tables(spec, [&](std::uint32_t, const std::function<void(const TrialRow&)>& visit) { visit(row); });
+  const auto tables_of =
+      tables(spec, [&](std::uint32_t, const std::function<void(const TrialRow&)>& visit) { visit(row); });
   ASSERT_TRUE(tables_of);
   EXPECT_TRUE(tables_of->empty());
 }

@@ -11,10 +11,11 @@ namespace {
 TEST(Philox, GivesThePublishedKnownAnswers) {
   using Block = std::array<std::uint64_t, 4>;
   EXPECT_EQ(philox_block({0, 0, 0, 0}, {0, 0}), (Block{0x16554d9eca36314cULL, 0xdb20fe9d672d0fdcULL,
-                                                     0xd7e772cee186176bULL, 0x7e68b68aec7ba23bULL}));
+                                                       0xd7e772cee186176bULL, 0x7e68b68aec7ba23bULL}));
   const std::uint64_t ones = ~0ULL;
-  EXPECT_EQ(philox_block({ones, ones, ones, ones}, {ones, ones}),
-            (Block{0x87b092c3013fe90bULL, 0x438c3c67be8d0224ULL, 0x9cc7d7c69cd777b6ULL, 0xa09caebf594f0ba0ULL}));
+  EXPECT_EQ(
+      philox_block({ones, ones, ones, ones}, {ones, ones}),
+      (Block{0x87b092c3013fe90bULL, 0x438c3c67be8d0224ULL, 0x9cc7d7c69cd777b6ULL, 0xa09caebf594f0ba0ULL}));
 }
 
 TEST(RandomStream, RepeatsItselfAndDiffersByEveryPartOfItsKey) {
