@@ -135,7 +135,9 @@ void print_nominal(const StabilityArguments& arguments, const NominalPlant& nomi
   }
   std::printf("stable, largest |z| %s, with K %s", fixed(*nominal.largest_pole, 7).c_str(),
               fixed(*nominal.largest_closed_loop_pole, 7).c_str());
-  if (nominal.moved_poles > 0) std::printf("; %d poles moved onto the circle 1 - 1e-8", nominal.moved_poles);
+  if (nominal.moved_poles > 0) {
+    std::printf("; %d %s moved onto the circle 1 - 1e-8", nominal.moved_poles, nominal.moved_poles == 1 ? "pole" : "poles");
+  }
   std::printf("\n");
 }
 
