@@ -28,5 +28,6 @@ void add_digest_command(CLI::App& app, Exit& exit);
 void add_replay_command(CLI::App& app, Exit& exit);
 void add_tables_command(CLI::App& app, Exit& exit);
 void add_ssv_command(CLI::App& app, Exit& exit);
+void add_stability_command(CLI::App& app, Exit& exit);
 
 }  // namespace fatmc::cli

@@ -7,10 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "coordinator/cli/command.h"
-#include "coordinator/input/record_file.h"
+#include "coordinator/cli/estimate_record.h"
 #include "core/base/text.h"
-#include "core/ident/fast_lpm.h"
-#include "core/ident/interpolation_bias.h"
 #include "core/record/column_file.h"
 
 namespace fatmc::cli {
@@ -18,88 +16,10 @@ namespace {
 
 struct EstimateArguments {
   std::vector<std::string> records;
-  std::string meta;
   std::string method = "lpm";
-  LpmOptions lpm;
-  int skip_periods = 0;
-  bool speed_correction = false;
+  EstimateOptions estimate;
   std::string directory;
 };
-
-struct EstimatedRecord {
-  Record record;
-  FrmEstimate frm;
-  MatrixStack<double> bias;
-  double speed_factor = 1.0;
-};
-
-/// V_trim / V_mean (3.4). V_trim is `trim_speed_m_s` of the record's TOML, or else the record's first sample.
-Result<double> speed_factor(const Record& record, double first_speed, const std::string& file) {
-  const int v = record.column("V");
-  if (std::find(record.auxiliary.begin(), record.auxiliary.end(), v) == record.auxiliary.end()) {
-    return fail(Error{file, 0, "speed-correction", "needs the airspeed: name the column V among the auxiliary channels"});
-  }
-  const double trim = record.trim_speed_m_s.value_or(first_speed);
-  const double factor = std::abs(trim) / std::abs(record.samples.col(v).mean());
-  if (!std::isfinite(factor) || factor <= 0.0) {
-    return fail(Error{file, 0, "V", "has no mean speed to correct with"});
-  }
-  return factor;
-}
-
-/// Lines that hold no estimate, as an error; success where there are none.
-Status check_lines(const FrmEstimate& frm, const std::string& file) {
-  for (int k = 0; k < frm.line_count(); ++k) {
-    const LineStatus status = frm.status[static_cast<std::size_t>(k)];
-    if (status == LineStatus::ok) continue;
-    const std::string what = status == LineStatus::singular_regressor
-                                 ? "the excitation channels depend on each other, name independent ones"
-                                 : "an input does not follow the references, leave it out";
-    return fail(Error{file, 0, "line " + std::to_string(frm.lines[static_cast<std::size_t>(k)]), what});
-  }
-  return {};
-}
-
-Result<EstimatedRecord> estimate(const EstimateArguments& arguments) {
-  const std::string& file = arguments.records.front();
-  Result<Record> read = read_record(file, arguments.meta);
-  if (!read) return fail(read.error());
-  EstimatedRecord out;
-  out.record = std::move(*read);
-  Record& record = out.record;
-  if (Status status = complete_period(record, file); !status) return fail(status.error());
-  const int v = record.column("V");
-  const double first_speed = v >= 0 ? record.samples(0, v) : 0.0;
-  if (Status status = skip_periods(record, arguments.skip_periods, file); !status) return fail(status.error());
-
-  const bool indirect = !record.reference.empty();
-  if (indirect && record.reference.size() != record.input.size()) {
-    return fail(Error{file, 0, "reference", std::to_string(record.reference.size()) + " references for " +
-                                                std::to_string(record.input.size()) +
-                                                " inputs: the indirect estimate needs one a input; leave the "
-                                                "references out for a direct one"});
-  }
-  Result<LpmGrid> grid =
-      LpmGrid::create({record.excited_lines, record.period_samples, record.periods, record.rate_hz}, arguments.lpm,
-                      static_cast<int>(record.input.size()));
-  if (!grid) {
-    Error error = grid.error();
-    if (error.file.empty()) error.file = file;
-    return fail(error);
-  }
-  FastLpm lpm(*grid, static_cast<int>(record.output.size()));
-  lpm.load(record.channels(record.output), record.channels(record.input));
-  out.frm = indirect ? lpm.indirect(spectra_at_lines(*grid, record.channels(record.reference))) : lpm.direct();
-  if (Status status = check_lines(out.frm, file); !status) return fail(status.error());
-  if (arguments.speed_correction) {
-    const Result<double> factor = speed_factor(record, first_speed, file);
-    if (!factor) return fail(factor.error());
-    out.speed_factor = *factor;
-    scale_response(out.frm, *factor);
-  }
-  out.bias = interpolation_bias(*grid, out.frm);
-  return out;
-}
 
 std::string frm_csv(const EstimatedRecord& e) {
   std::string text = "line,frequency_hz,output,input,re,im,variance,bias\n";
@@ -123,17 +43,17 @@ std::string estimate_json(const EstimateArguments& arguments, const EstimatedRec
   nlohmann::ordered_json json;
   json["method"] = arguments.method;
   json["indirect"] = e.frm.indirect;
-  json["order"] = arguments.lpm.order;
-  json["n_e"] = arguments.lpm.n_e;
+  json["order"] = arguments.estimate.lpm.order;
+  json["n_e"] = arguments.estimate.lpm.n_e;
   json["q"] = e.frm.q;
-  json["n_transient"] = arguments.lpm.n_transient;
+  json["n_transient"] = arguments.estimate.lpm.n_transient;
   json["q_noise"] = e.frm.q_noise;
   json["periods"] = e.record.periods;
-  json["skipped_periods"] = arguments.skip_periods;
+  json["skipped_periods"] = arguments.estimate.skip_periods;
   json["period_samples"] = e.record.period_samples;
   json["rate_hz"] = e.record.rate_hz;
   json["lines"] = e.frm.lines;
-  json["speed_factor"] = arguments.speed_correction ? nlohmann::ordered_json(e.speed_factor) : nullptr;
+  json["speed_factor"] = arguments.estimate.speed_correction ? nlohmann::ordered_json(e.speed_factor) : nullptr;
   std::vector<int> border;
   for (int k = 0; k < e.frm.line_count(); ++k) {
     const auto at = static_cast<std::size_t>(k);
@@ -176,13 +96,7 @@ std::string peaks(const FrmEstimate& frm, int i, int j) {
 
 void print_summary(const EstimateArguments& arguments, const EstimatedRecord& e) {
   const FrmEstimate& frm = e.frm;
-  std::printf("%s: %d periods of %d samples at %s Hz, %d excited lines, %s to %s Hz\n",
-              arguments.records.front().c_str(), e.record.periods, e.record.period_samples,
-              shortest(e.record.rate_hz).c_str(), frm.line_count(), significant(frm.frequency_hz.front(), 4).c_str(),
-              significant(frm.frequency_hz.back(), 4).c_str());
-  std::printf("fast LPM, %s, order %d, n_E %d: q = %d degrees of freedom (noise %d)\n",
-              frm.indirect ? "indirect" : "direct", arguments.lpm.order, arguments.lpm.n_e, frm.q, frm.q_noise);
-  if (arguments.speed_correction) std::printf("speed correction (3.4): factor %s\n", significant(e.speed_factor, 5).c_str());
+  print_estimate_head(arguments.estimate, e);
   for (int i = 0; i < frm.n_out; ++i) {
     for (int j = 0; j < frm.n_in; ++j) {
       std::printf("  %s/%s: highest peaks %s\n",
@@ -196,7 +110,7 @@ void print_summary(const EstimateArguments& arguments, const EstimatedRecord& e)
     biased += static_cast<int>((e.bias[k].array() > 0.1 * frm.G[k].array().abs()).count());
   }
   if (biased > 0) {
-    const int smallest = ((arguments.lpm.order + 1) * frm.n_in + 1) / 2;
+    const int smallest = ((arguments.estimate.lpm.order + 1) * frm.n_in + 1) / 2;
     std::printf("interpolation bias above 10 %% of the element at %d of %d points: a smaller --n-e follows peaks more "
                 "closely, from %d on there is a variance\n",
                 biased, frm.line_count() * frm.n_out * frm.n_in, smallest);
@@ -207,7 +121,7 @@ void print_summary(const EstimateArguments& arguments, const EstimatedRecord& e)
   std::printf("written: %s/frm.csv, %s/estimate.json\n", arguments.directory.c_str(), arguments.directory.c_str());
 }
 
-Exit run_estimate(const EstimateArguments& arguments) {
+Exit run_estimate(EstimateArguments& arguments) {
   if (arguments.records.size() != 1) {
     return report(Error{"", 0, "RECORD.csv", "estimate takes one record at a time so far, " +
                                                  std::to_string(arguments.records.size()) + " are named"});
@@ -215,7 +129,8 @@ Exit run_estimate(const EstimateArguments& arguments) {
   if (arguments.method != "lpm") {
     return report(Error{"", 0, "--method", "\"" + arguments.method + "\" does not exist, there is: lpm"});
   }
-  const Result<EstimatedRecord> result = estimate(arguments);
+  arguments.estimate.record = arguments.records.front();
+  const Result<EstimatedRecord> result = estimate_record(arguments.estimate);
   if (!result) return report(result.error());
   std::filesystem::create_directories(arguments.directory);
   write_file_atomically(arguments.directory + "/frm.csv", frm_csv(*result));
@@ -230,15 +145,8 @@ void add_estimate_command(CLI::App& app, Exit& exit) {
   auto arguments = std::make_shared<EstimateArguments>();
   CLI::App* command = app.add_subcommand("estimate", "Frequency response matrix of a periodic record.");
   command->add_option("record", arguments->records, "RECORD.csv, its RECORD.toml beside it")->required();
-  command->add_option("--meta", arguments->meta, "the record's TOML where it is not beside the CSV");
   command->add_option("--method", arguments->method, "lpm: fast local polynomial method")->capture_default_str();
-  command->add_option("--n-e", arguments->lpm.n_e, "excited lines on each side of a line")->capture_default_str();
-  command->add_option("--order", arguments->lpm.order, "degree of the polynomials")->capture_default_str();
-  command->add_option("--n-transient", arguments->lpm.n_transient, "non-excited bins on each side of a line")
-      ->capture_default_str();
-  command->add_option("--skip-periods", arguments->skip_periods, "leading periods to leave out")->capture_default_str();
-  command->add_flag("--speed-correction", arguments->speed_correction,
-                    "scale with V_trim / V_mean; V must be an auxiliary channel");
+  add_estimate_options(*command, arguments->estimate);
   command->add_option("-o,--output", arguments->directory, "directory for frm.csv and estimate.json")->required();
   command->footer("Example: fatmc estimate flight.csv --n-e 9 --skip-periods 1 -o results/flight");
   command->callback([arguments, &exit] { exit = run_estimate(*arguments); });

@@ -4,10 +4,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "campaigns/base/aircraft_model.h"
 #include "campaigns/models/fat_published.h"
 #include "coordinator/cli/command.h"
-#include "coordinator/input/toml_file.h"
+#include "coordinator/input/aircraft_file.h"
 #include "core/base/text.h"
 #include "core/flight/linear_model.h"
 
@@ -25,20 +24,10 @@ struct Linearization {
 };
 
 Result<Linearization> linearization(const std::string& path) {
-  const Result<Tree> tree = read_toml(path);
-  if (!tree) return fail(tree.error());
-  Result<AircraftModel> model = decode_aircraft_model(*tree);
-  if (!model) return fail(model.error());
-  const Trim trim = trim_level(model->aircraft);
-  if (!trim.usable()) {
-    return fail(Error{path, 0, "trim.speed_m_s",
-                      trim.outcome == Trim::Outcome::outside_model
-                          ? "level flight there needs more than throttle, elevator or angle of attack allow"
-                          : "no level flight found: residual " + significant(trim.residual, 3) + " after " +
-                                std::to_string(trim.iterations) + " iterations"});
-  }
-  return Linearization{model->aircraft, trim, linearize(model->aircraft, trim),
-                       sample(model->aircraft, trim, kTickSeconds, 1)};
+  Result<TrimmedAircraft> read = read_trimmed_aircraft(path);
+  if (!read) return fail(read.error());
+  return Linearization{read->aircraft, read->trim, linearize(read->aircraft, read->trim),
+                       sample(read->aircraft, read->trim, kTickSeconds, 1)};
 }
 
 template <typename Matrix>

@@ -22,6 +22,7 @@ int run(int argc, char** argv) {
   add_simulate_command(app, exit);
   add_estimate_command(app, exit);
   add_ssv_command(app, exit);
+  add_stability_command(app, exit);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "coordinator/input/csv_row.h"
 #include "core/base/text.h"
 
 namespace fatmc {
@@ -18,19 +19,6 @@ struct Column {
   Kind kind = Kind::id;
   Eigen::Index row = 0, column = 0;
 };
-
-std::vector<std::string> split(std::string_view line) {
-  std::vector<std::string> out;
-  for (;;) {
-    const std::size_t comma = line.find(',');
-    std::string_view part = line.substr(0, comma);
-    while (!part.empty() && (part.front() == ' ' || part.front() == '\t')) part.remove_prefix(1);
-    while (!part.empty() && (part.back() == ' ' || part.back() == '\t' || part.back() == '\r')) part.remove_suffix(1);
-    out.emplace_back(part);
-    if (comma == std::string_view::npos) return out;
-    line.remove_prefix(comma + 1);
-  }
-}
 
 /// A number from 1 without sign or leading zero, as an index from 0.
 bool parse_index(std::string_view text, Eigen::Index& index) {
@@ -75,7 +63,7 @@ std::string name_of(const Column& c, Eigen::Index n_in, Eigen::Index n_out) {
 
 Result<Header> parse_header(const std::string& line, const std::string& path) {
   Header header;
-  header.names = split(line);
+  header.names = split_csv_row(line);
   for (const std::string& name : header.names) {
     Column column;
     if (!parse_column(name, column)) {
@@ -110,7 +98,7 @@ Result<Header> parse_header(const std::string& line, const std::string& path) {
 }
 
 Result<LoopFactors> parse_row(const Header& header, const std::string& line, const std::string& path, int number) {
-  const std::vector<std::string> values = split(line);
+  const std::vector<std::string> values = split_csv_row(line);
   if (values.size() != header.names.size()) {
     return fail(Error{path, number, "", "has " + std::to_string(values.size()) + " values for " +
                                             std::to_string(header.names.size()) + " columns"});

@@ -34,16 +34,6 @@ JudgementStatus check(const EstimatedLine& line, const Eigen::Ref<const Eigen::M
   return JudgementStatus::ok;
 }
 
-LineStability failed(JudgementStatus status) {
-  const double infinity = std::numeric_limits<double>::infinity();
-  LineStability out;
-  out.status = status;
-  out.h_infinity_nominal = out.ssv_nominal = out.h_infinity = infinity;
-  out.ssv.upper = infinity;
-  out.ssv.status = SsvStatus::not_converged;
-  return out;
-}
-
 }  // namespace
 
 Eigen::MatrixXd systematic_error(const EstimatedLine& line, const StabilityOptions& options) {
@@ -77,6 +67,7 @@ double line_confidence(double kappa, const Eigen::Ref<const Eigen::MatrixXd>& si
 std::string judgement_text(JudgementStatus status) {
   switch (status) {
     case JudgementStatus::ok: return "ok";
+    case JudgementStatus::no_estimate: return "the estimator gave nothing: excite the line, or leave it out";
     case JudgementStatus::not_finite: return "estimate, deviation or model is not finite: drop the line or estimate it anew";
     case JudgementStatus::wrong_shape: return "shapes do not fit, or deviation, bias or q is out of range";
     case JudgementStatus::singular_loop:
@@ -85,14 +76,24 @@ std::string judgement_text(JudgementStatus status) {
   return "unknown";
 }
 
+LineStability failed_line(JudgementStatus status) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  LineStability out;
+  out.status = status;
+  out.h_infinity_nominal = out.ssv_nominal = out.h_infinity = infinity;
+  out.ssv.upper = infinity;
+  out.ssv.status = SsvStatus::not_converged;
+  return out;
+}
+
 LineStability judge_line(const EstimatedLine& line, const Eigen::Ref<const Eigen::MatrixXcd>& nominal,
                          const Eigen::Ref<const Eigen::MatrixXcd>& controller, const StabilityOptions& options,
                          StabilityScalings* scalings) {
   const JudgementStatus status = check(line, nominal, controller);
-  if (status != JudgementStatus::ok) return failed(status);
+  if (status != JudgementStatus::ok) return failed_line(status);
   const LoopMatrix nominal_loop = loop_matrix(nominal, controller);
   const LoopMatrix loop = loop_matrix(line.response, controller);
-  if (!nominal_loop.invertible || !loop.invertible) return failed(JudgementStatus::singular_loop);
+  if (!nominal_loop.invertible || !loop.invertible) return failed_line(JudgementStatus::singular_loop);
 
   LineStability out;
   const Eigen::MatrixXd difference = (line.response - nominal).cwiseAbs();

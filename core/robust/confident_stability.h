@@ -55,6 +55,7 @@ double line_confidence(double kappa, const Eigen::Ref<const Eigen::MatrixXd>& si
 
 enum class JudgementStatus {
   ok,
+  no_estimate,    ///< the estimator gave nothing on this line
   not_finite,     ///< estimate, deviation or model hold NaN or infinity: the estimator failed on this line
   wrong_shape,    ///< shapes do not fit each other, q ≤ 0, or a negative deviation
   singular_loop,  ///< I + K Ĝ or I + K G_n is singular: the loop is on the border of stability at this frequency
@@ -77,6 +78,9 @@ struct LineStability {
   double p_total_h_infinity = 0.0;  ///< zero unless κ_nom > 1 and the SNR suffices (T 2.272)
   double p_total_ssv = 0.0;
 };
+
+/// What a line that cannot be judged holds.
+LineStability failed_line(JudgementStatus status);
 
 /// Scalings of the two ssv problems of a line, handed from line to line or epoch to epoch: neighbours are close.
 struct StabilityScalings {

@@ -1,8 +1,10 @@
 #include "core/robust/nominal_model.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 namespace fatmc {
 
@@ -28,6 +30,27 @@ std::optional<StabilisedModel> stabilise(const SampledModel& model, double radiu
   }
   if (out.moved_poles > 0) out.model.a = schur.matrixU() * t * schur.matrixU().transpose();
   return out;
+}
+
+Eigen::MatrixXcd sampled_response(const SampledModel& model, double frequency_hz, double rate_hz) {
+  Eigen::MatrixXcd pencil = -model.a.cast<std::complex<double>>();
+  pencil.diagonal().array() += std::polar(1.0, 2.0 * std::numbers::pi * frequency_hz / rate_hz);
+  Eigen::MatrixXcd out = model.d.cast<std::complex<double>>();
+  if (pencil.rows() > 0) {
+    out += model.c.cast<std::complex<double>>() * pencil.partialPivLu().solve(model.b.cast<std::complex<double>>());
+  }
+  return out;
+}
+
+std::optional<double> closed_loop_radius(const SampledModel& model, const Eigen::Ref<const Eigen::MatrixXd>& controller) {
+  const Eigen::Index n_in = model.b.cols();
+  const Eigen::FullPivLU<Eigen::MatrixXd> direct(Eigen::MatrixXd::Identity(n_in, n_in) + controller * model.d);
+  if (!direct.isInvertible()) return std::nullopt;
+  if (model.a.rows() == 0) return 0.0;
+  const Eigen::MatrixXd feedback = direct.solve(Eigen::MatrixXd(controller * model.c));
+  const Eigen::EigenSolver<Eigen::MatrixXd> poles(model.a - model.b * feedback, false);
+  if (poles.info() != Eigen::Success) return std::nullopt;
+  return poles.eigenvalues().cwiseAbs().maxCoeff();
 }
 
 }  // namespace fatmc

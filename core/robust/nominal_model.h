@@ -29,4 +29,11 @@ struct StabilisedModel {
 /// such pole A is returned as it is. Nothing where A is not square or finite, or the Schur iteration fails.
 std::optional<StabilisedModel> stabilise(const SampledModel& model, double radius = kStablePoleRadius);
 
+/// C (e^{jωT} I − A)⁻¹ B + D at f in Hz, T = 1/rate; n_out × n_in. Poles on the unit circle at f give what is not finite.
+Eigen::MatrixXcd sampled_response(const SampledModel& model, double frequency_hz, double rate_hz);
+
+/// Largest |pole| of the loop u = K (r − y), A − B (I + K D)⁻¹ K C; `controller` is n_in × n_out. Below 1: stable.
+/// Nothing where I + K D is singular (no loop exists) or the eigenvalue iteration fails.
+std::optional<double> closed_loop_radius(const SampledModel& model, const Eigen::Ref<const Eigen::MatrixXd>& controller);
+
 }  // namespace fatmc
