@@ -56,6 +56,11 @@ Status resolve_excitation(Excitation& excitation, double rate_hz, const Tree& wh
     return fail(Error{where.file, where.line, "excitation.period_s",
                       "is no whole number of samples, write a multiple of 1/rate_hz"});
   }
+  constexpr double kMostSamples = 2e7;  // of a record: 13 channels of that length are 2 GB
+  if (samples * excitation.periods > kMostSamples) {
+    return fail(Error{where.file, where.line, "excitation.period_s",
+                      "times periods and rate gives more than 20,000,000 samples, write a shorter record"});
+  }
   excitation.period_samples = static_cast<int>(std::lround(samples));
   auto lines = lines_from_ranges(excitation.ranges, 1.0 / excitation.period_s);
   if (!lines) {
@@ -94,6 +99,26 @@ Result<Experiment> decode_experiment(const Tree& tree, const AircraftModel& mode
   }
   if (Status status = top.finish(); !status) return fail(status.error());
   return out;
+}
+
+Error locate_flight_error(const Error& error, const Tree& model, const Tree& experiment) {
+  static constexpr std::array<std::array<std::string_view, 3>, 4> kKeys = {{
+      {"rate_hz", "simulation", "rate_hz"},
+      {"step_s", "simulation", "rk4_step_s"},
+      {"imu_step_s", "simulation", "imu_step_s"},
+      {"turbulence_m_s", "environment", "turbulence_sigma_m_s"},
+  }};
+  for (const auto& [own, table_name, key] : kKeys) {
+    if (error.key != own) continue;
+    const Tree* table = experiment.find(table_name);
+    const Tree* entry = table != nullptr ? table->find(key) : nullptr;
+    const Tree& place = entry != nullptr ? *entry : experiment;
+    return {place.file, place.line, std::string(table_name) + "." + std::string(key), error.message};
+  }
+  const Tree* trim = model.find("trim");
+  const Tree* speed = trim != nullptr ? trim->find("speed_m_s") : nullptr;
+  const Tree& place = speed != nullptr ? *speed : model;
+  return {place.file, place.line, error.key == "speed_m_s" ? "trim.speed_m_s" : error.key, error.message};
 }
 
 Eigen::MatrixX3d reference_signal(const Experiment& experiment, const TrialSeed& trial) {

@@ -37,6 +37,9 @@ std::vector<FrequencyRange> decode_ranges(Decoder& table, std::string_view key);
 /// `model` brings the gyros that the experiment names by grade.
 Result<Experiment> decode_experiment(const Tree& tree, const AircraftModel& model);
 
+/// Where an error of Flight::prepare stands: its key in the experiment (under the name it has there), or else the model.
+Error locate_flight_error(const Error& error, const Tree& model, const Tree& experiment);
+
 /// Lines and samples of a period from ranges, period and rate; `where` names the table for messages.
 Status resolve_excitation(Excitation& excitation, double rate_hz, const Tree& where);
 

@@ -25,6 +25,10 @@ std::string_view region_name(Region region) {
   FATMC_CHECK(false, "not a region");
 }
 
+bool needs_printed_constant(Region region) {
+  return region == Region::extended_printed_constant || region == Region::printed_constant_as_printed;
+}
+
 double normalised_square(const TrialErrors& trial, Region region, std::size_t index) {
   const double variance = trial.variance[index];
   const auto extended = [&](double bias) { return std::max(0.0, std::abs(trial.error[index]) - bias); };

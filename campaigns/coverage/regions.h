@@ -35,6 +35,8 @@ inline constexpr std::array kRegions = {Region::plain,
                                         Region::printed_constant_as_printed,
                                         Region::sample};
 std::string_view region_name(Region region);
+/// Print has a constant for the orders 2, 4 and 6 only.
+bool needs_printed_constant(Region region);
 
 inline constexpr std::array kLevels = {0.75, 0.90, 0.95, 0.99};
 
@@ -45,7 +47,7 @@ struct TrialErrors {
       sample_error;  ///< (Ĝ − mean Ĝ) √(n/(n−1)); empty while the mean is unknown
   std::vector<double> variance;
   std::vector<double> bias;          ///< constant of the actual offsets
-  std::vector<double> bias_printed;  ///< printed constant
+  std::vector<double> bias_printed;  ///< printed constant; empty where print has none
 };
 
 /// |e| reduced as `region` says, squared, over the variance of element `index`.

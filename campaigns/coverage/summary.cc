@@ -42,7 +42,7 @@ TrialErrors read_errors(const TrialRow& row) {
   for (std::size_t i = 0; i < re.size(); ++i) out.error.emplace_back(re[i], im[i]);
   out.variance = need(row, kVariance);
   out.bias = need(row, kBias);
-  out.bias_printed = need(row, kBiasPrinted);
+  if (const auto* printed = row.array(kBiasPrinted)) out.bias_printed = *printed;
   return out;
 }
 
@@ -85,6 +85,7 @@ CellCoverage collect(std::uint32_t cell, const RowSource& rows) {
     const int q = static_cast<int>(metric(row, kDegreesOfFreedom));
     for (const Region region : kRegions) {
       if (region == Region::sample && n < 2) continue;
+      if (needs_printed_constant(region) && errors.bias_printed.empty()) continue;
       for (std::size_t level = 0; level < kLevels.size(); ++level) {
         const TrialCoverage coverage = trial_coverage(errors, region, kLevels[level], elements, q);
         out.shares[{region, level, 0}].push_back(coverage.element);
@@ -113,6 +114,10 @@ CellCoverage collect(std::uint32_t cell, const RowSource& rows) {
 // side of the nominal level, `differs` otherwise.
 void judge(TableRow& row, double nominal, const std::string& reason) {
   if (std::isnan(row.published)) return;
+  if (std::isnan(row.low)) {
+    row.why += (row.why.empty() ? "" : "; ") + std::string("one run has no scatter: no interval, no verdict");
+    return;
+  }
   if (row.published >= row.low && row.published <= row.high) {
     row.verdict = "match";
   } else if ((row.published - nominal) * (row.value - nominal) > 0.0) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <optional>
 
 #include "campaigns/base/experiment.h"
 #include "campaigns/coverage/coverage_cell.h"
@@ -81,16 +82,16 @@ class CoverageTrials final : public PreparedCell {
     // (3.4): the response grows with airspeed; refer it to the trim speed.
     if (cell_.speed_correction) scale_response(frm, flight_.aircraft().speed_m_s / mean_speed);
     const MatrixStack<double> bias = interpolation_bias(grid_, frm, BiasConstant::exact_offsets);
-    // No printed constant for this order: the limit stands in its place.
-    const MatrixStack<double> printed = interpolation_bias(
-        grid_, frm,
-        printed_bias_constant(cell_.estimator.order) ? BiasConstant::printed : BiasConstant::limit);
+    std::optional<MatrixStack<double>> printed;  // print has constants for the orders 2, 4 and 6
+    if (printed_bias_constant(cell_.estimator.order)) {
+      printed = interpolation_bias(grid_, frm, BiasConstant::printed);
+    }
     store(frm, bias, printed, row);
     row.metrics.emplace_back("mean_speed_m_s", mean_speed);
   }
 
-  void store(const FrmEstimate& frm, const MatrixStack<double>& bias, const MatrixStack<double>& printed,
-             TrialRow& row) const {
+  void store(const FrmEstimate& frm, const MatrixStack<double>& bias,
+             const std::optional<MatrixStack<double>>& printed, TrialRow& row) const {
     std::vector<double> re, im, variance, b, b_printed, snr;
     for (int k = 0; k < frm.line_count(); ++k) {
       for (int i = 0; i < kAxes; ++i) {
@@ -100,7 +101,7 @@ class CoverageTrials final : public PreparedCell {
           im.push_back(error.imag());
           variance.push_back(frm.variance(k, i, j));
           b.push_back(bias[k](i, j));
-          b_printed.push_back(printed[k](i, j));
+          if (printed) b_printed.push_back((*printed)[k](i, j));
         }
       }
       for (int j = 0; j < kAxes; ++j)
@@ -119,7 +120,7 @@ class CoverageTrials final : public PreparedCell {
     row.arrays.emplace_back(kErrorImag, std::move(im));
     row.arrays.emplace_back(kVariance, std::move(variance));
     row.arrays.emplace_back(kBias, std::move(b));
-    row.arrays.emplace_back(kBiasPrinted, std::move(b_printed));
+    if (printed) row.arrays.emplace_back(kBiasPrinted, std::move(b_printed));
     row.arrays.emplace_back(kInputSnr, std::move(snr));
   }
 
@@ -156,7 +157,13 @@ Result<std::unique_ptr<PreparedCell>> prepare(const CampaignSpec& spec, std::uin
     return table != nullptr ? Error{table->file, table->line, key, error.message} : error;
   };
   auto flight = Flight::prepare(cell->aircraft, cell->experiment.flight);
-  if (!flight) return fail(place("experiment", flight.error()));
+  if (!flight) {
+    Error error = locate_flight_error(flight.error(), *spec.tree.find("model"), *spec.tree.find("experiment"));
+    // The cell may have put another value in the experiment's place.
+    const std::string key = error.key.substr(error.key.rfind('.') + 1);
+    if (const Tree* own = spec.cells.at(index).tree.find(key)) error = {own->file, own->line, "cell." + key, error.message};
+    return fail(std::move(error));
+  }
   const Excitation& excitation = cell->experiment.excitation;
   auto grid = LpmGrid::create(
       {excitation.lines, excitation.period_samples, excitation.periods, cell->experiment.flight.rate_hz},

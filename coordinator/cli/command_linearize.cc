@@ -109,6 +109,8 @@ void print_beside_published(const Linearization& of) {
   row(published::kTableA1, 2, pole(4));
   row(published::kTableA1, 3, nearest(pitch_zeros, -2.0 * kPi * published::kTableA1[3].frequency_hz));
   std::printf(
+      "  T_theta1: no plausible set of derivatives found that meets it, campaigns/models/README.md says why\n");
+  std::printf(
       "\nTable A-2, lateral        published         ours  deviation (spiral: printed as a bound, \"<\")\n");
   row(published::kTableA2, 0, pole(0));
   row(published::kTableA2, 1, pole(5));

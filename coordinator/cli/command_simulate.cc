@@ -1,6 +1,9 @@
 // fatmc simulate: one flight as a record.
+#include <unistd.h>
+
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 
 #include "campaigns/base/aircraft_model.h"
@@ -16,8 +19,8 @@ namespace {
 
 struct Options {
   std::string model, experiment, record;
-  std::uint64_t seed = 0;
-  std::uint64_t repetition = 0;
+  std::int64_t seed = 0;
+  std::int64_t repetition = 0;
 };
 
 struct Flown {
@@ -39,9 +42,10 @@ Result<Flown> fly(const Options& options) {
   if (!experiment) return fail(experiment.error());
   out.experiment = std::move(*experiment);
   auto flight = Flight::prepare(out.model.aircraft, out.experiment.flight);
-  if (!flight) return fail(Error{options.experiment, 0, flight.error().key, flight.error().message});
+  if (!flight) return fail(locate_flight_error(flight.error(), *model_tree, *experiment_tree));
   // A record of no campaign: study and cell are those of this command.
-  const TrialSeed seed{options.seed, name_hash("simulate"), 0, options.repetition};
+  const TrialSeed seed{static_cast<std::uint64_t>(options.seed), name_hash("simulate"), 0,
+                       static_cast<std::uint64_t>(options.repetition)};
   flight->fly(reference_signal(out.experiment, seed), seed, out.record);
   return out;
 }
@@ -86,17 +90,38 @@ std::string record_toml(const Flown& flown) {
   return text;
 }
 
+// Nothing but an older record is overwritten, and what cannot be written is said before the flight.
+Status check_targets(const std::string& csv_path, const std::string& toml_path) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::absolute(csv_path).parent_path();
+  if (!fs::is_directory(folder)) {
+    return fail(Error{csv_path, 0, "-o", "there is no folder " + folder.string() + ", make it or name another"});
+  }
+  if (::access(folder.c_str(), W_OK) != 0) {
+    return fail(Error{csv_path, 0, "-o", "the folder cannot be written to, name another"});
+  }
+  for (const std::string& path : {csv_path, toml_path}) {
+    const auto status = fs::symlink_status(path);
+    if (fs::exists(status) && !fs::is_regular_file(status)) {
+      return fail(Error{path, 0, "-o", "is no plain file, name another"});
+    }
+  }
+  if (fs::exists(toml_path)) {
+    const Result<Tree> old = read_toml(toml_path);
+    if (!old || old->find("record") == nullptr) {
+      return fail(Error{toml_path, 0, "-o", "exists and is no record's TOML: it would be overwritten, name another CSV"});
+    }
+  }
+  return {};
+}
+
 Exit run(const Options& options) {
   const std::string toml_path = record_toml_beside(options.record);
   if (toml_path == options.record) {
     return report(Error{options.record, 0, "-o",
                         "ends in .toml, name a CSV file: its roles go into the TOML beside it"});
   }
-  for (const std::string& input : {options.model, options.experiment}) {
-    if (std::filesystem::exists(toml_path) && std::filesystem::equivalent(input, toml_path)) {
-      return report(Error{toml_path, 0, "-o", "would overwrite an input, choose another name"});
-    }
-  }
+  if (Status status = check_targets(options.record, toml_path); !status) return report(status.error());
   auto flown = fly(options);
   if (!flown) return report(flown.error());
   const FlightRecord& record = flown->record;

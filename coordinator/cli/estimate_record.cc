@@ -84,11 +84,18 @@ Result<EstimatedRecord> estimate_record(const EstimateOptions& options) {
 
 void add_estimate_options(CLI::App& command, EstimateOptions& options) {
   command.add_option("--meta", options.meta, "the record's TOML where it is not beside the CSV");
-  command.add_option("--n-e", options.lpm.n_e, "excited lines on each side of a line")->capture_default_str();
-  command.add_option("--order", options.lpm.order, "degree of the polynomials")->capture_default_str();
-  command.add_option("--n-transient", options.lpm.n_transient, "non-excited bins on each side of a line")
+  command.add_option("--n-e", options.lpm.n_e, "excited lines on each side of a line")
+      ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  command.add_option("--skip-periods", options.skip_periods, "leading periods to leave out")->capture_default_str();
+  command.add_option("--order", options.lpm.order, "degree of the polynomials")
+      ->check(CLI::Range(0, 10))
+      ->capture_default_str();
+  command.add_option("--n-transient", options.lpm.n_transient, "non-excited bins on each side of a line")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command.add_option("--skip-periods", options.skip_periods, "leading periods to leave out")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
   command.add_flag("--speed-correction", options.speed_correction,
                    "scale with V_trim / V_mean; V must be an auxiliary channel");
 }

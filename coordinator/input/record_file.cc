@@ -52,6 +52,11 @@ Status decode(const Tree& file, Record& record) {
     table.reject("excited_lines", "are harmonics of a period, give period_samples too");
   }
   if (table.has("controller_gain")) {
+    // Empty roles are refused by validate(); a gain has no shape before that.
+    if (record.input.empty() || record.output.empty()) {
+      table.reject(record.input.empty() ? "input" : "output", "names no column, write at least one");
+      return table.finish();
+    }
     const auto rows = table.matrix("controller_gain", record.input.size(), record.output.size());
     Eigen::MatrixXd gain(static_cast<Eigen::Index>(record.input.size()),
                          static_cast<Eigen::Index>(record.output.size()));

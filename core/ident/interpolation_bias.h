@@ -30,7 +30,8 @@
 namespace fatmc {
 
 enum class BiasConstant {
-  exact_offsets,  ///< the sum above over the lines of the window: the default, holds for any grid and at borders
+  exact_offsets,  ///< the sum above over the lines of the window: the default. In windows that are shifted (borders) or uneven
+                  ///< the odd power R + 1 does not drop out and leads; the formula leaves it out, as (2.145) does
   limit,          ///< alpha of many lines, with B_lpm = (2 n_E + 1) times the mean spacing in the window
   printed,        ///< Table 2-3's alpha with the same B_lpm; R = 2, 4, 6 only
 };

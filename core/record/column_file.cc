@@ -81,6 +81,7 @@ Result<Columns> read_columns(const std::string& path) {
   buffer << in.rdbuf();
   const std::string text = std::move(buffer).str();
   std::string_view rest = text;
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // byte order mark of some spreadsheets
   Result<std::vector<std::string>> names = read_names(next_line(rest), path);
   if (!names) return fail(names.error());
 
@@ -114,6 +115,12 @@ Result<Columns> read_columns(const std::string& path) {
 }
 
 void write_file_atomically(const std::string& path, const std::string& text) {
+  // The rename would put a file in the place of a device, pipe or link.
+  std::error_code ignored;
+  const auto status = std::filesystem::symlink_status(path, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw std::system_error(std::make_error_code(std::errc::file_exists), path + " is no plain file");
+  }
   const std::string temporary = path + ".part" + std::to_string(::getpid());
   std::FILE* file = std::fopen(temporary.c_str(), "wb");
   if (file == nullptr) throw std::system_error(errno, std::generic_category(), path);

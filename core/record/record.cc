@@ -76,6 +76,12 @@ Status validate(Record& record, const std::string& file) {
   if (record.sample_count() < 4) return fail(Error{file, 0, "", "the record holds fewer than 4 samples"});
   if (record.input.empty()) return fail(Error{file, 0, "input", "no input column is named"});
   if (record.output.empty()) return fail(Error{file, 0, "output", "no output column is named"});
+  for (const int column : record.input) {
+    if (std::find(record.output.begin(), record.output.end(), column) != record.output.end()) {
+      return fail(Error{file, 0, record.names[static_cast<std::size_t>(column)],
+                        "is named as input and as output, name it once"});
+    }
+  }
   if (Status status = check_channels(record, file); !status) return status;
   return check_periods(record, file);
 }
