@@ -197,7 +197,7 @@ void print_summary(const StabilityArguments& arguments, const JudgedRecord& judg
   std::printf("  %-34s %-22s %s\n", "", "H-infinity", "ssv");
   print_row("nominal, largest", worst(judged, [](const LineStability& l) { return l.h_infinity_nominal; }),
             worst(judged, [](const LineStability& l) { return l.ssv_nominal; }));
-  print_row(arguments.options.bias ? "robust (sigma + bias), largest" : "robust (sigma), largest", worst(judged, [](const LineStability& l) { return l.h_infinity; }),
+  print_row("robust, largest", worst(judged, [](const LineStability& l) { return l.h_infinity; }),
             worst(judged, [](const LineStability& l) { return l.ssv.upper; }));
   print_row("p of a line, smallest", worst(judged, [](const LineStability& l) { return l.p_h_infinity; }, -1.0),
             worst(judged, [](const LineStability& l) { return l.p_ssv; }, -1.0));
