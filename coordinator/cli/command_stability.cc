@@ -147,7 +147,7 @@ std::string worst(const JudgedRecord& judged, const std::function<double(const L
   const auto at = std::max_element(lines.begin(), lines.end(), [&](const LineStability& a, const LineStability& b) {
     return sign * value(a) < sign * value(b);
   });
-  return significant(value(*at), 4) + " at " +
+  return significant(value(*at), 5) + " at " +
          significant(judged.estimated.frm.frequency_hz[static_cast<std::size_t>(at - lines.begin())], 4) + " Hz";
 }
 
@@ -175,6 +175,12 @@ void print_gates(const StabilityArguments& arguments, const JudgedRecord& judged
                 significant(f[k], 4).c_str(), judgement_text(s.lines[k].status).c_str());
     break;
   }
+  const auto hopeless = std::count_if(s.lines.begin(), s.lines.end(), [](const LineStability& l) { return l.p_ssv == 0.0; });
+  if (hopeless > 0) {
+    std::printf("       p(ssv) is zero on %td %s: bias and intergrid error alone break the criterion there, whatever the "
+                "noise (--bias off leaves the bias out)\n",
+                hopeless, hopeless == 1 ? "line" : "lines");
+  }
   const auto cover = intergrid_cover(f, arguments.options.intergrid);
   if (arguments.options.intergrid > 0.0 && cover) {
     std::printf("       intergrid error %s %%: resonances between lines are covered from a damping of %s on (gap of %s Hz at "
@@ -191,12 +197,13 @@ void print_summary(const StabilityArguments& arguments, const JudgedRecord& judg
   std::printf("  %-34s %-22s %s\n", "", "H-infinity", "ssv");
   print_row("nominal, largest", worst(judged, [](const LineStability& l) { return l.h_infinity_nominal; }),
             worst(judged, [](const LineStability& l) { return l.ssv_nominal; }));
-  print_row("robust (1 sigma + bias), largest", worst(judged, [](const LineStability& l) { return l.h_infinity; }),
+  print_row("robust, largest", worst(judged, [](const LineStability& l) { return l.h_infinity; }),
             worst(judged, [](const LineStability& l) { return l.ssv.upper; }));
   print_row("p of a line, smallest", worst(judged, [](const LineStability& l) { return l.p_h_infinity; }, -1.0),
             worst(judged, [](const LineStability& l) { return l.p_ssv; }, -1.0));
-  print_row("p over the band", significant(band.p_h_infinity, 4), significant(band.p_ssv, 4));
-  print_row("p over the band, gated (total)", significant(band.p_total_h_infinity, 4), significant(band.p_total_ssv, 4));
+  print_row("p over the band", significant(band.p_h_infinity, 5), significant(band.p_ssv, 5));
+  print_row("p over the band, gated (total)", significant(band.p_total_h_infinity, 5),
+            significant(band.p_total_ssv, 5));
   print_gates(arguments, judged);
   std::printf("ssv: upper and lower bound agree to 1e-8 on %d of %zu lines\n", certified_lines(judged),
               judged.stability.lines.size());

@@ -47,9 +47,7 @@ EstimateStability judge_estimate(const FrmEstimate& estimate, const MatrixStack<
   EstimateStability out;
   out.lines.reserve(size);
   out.snr_min_db.reserve(size);
-  StabilityScalings along_frequency;
-  const bool kept = scalings != nullptr && scalings->size() == size;
-  if (scalings != nullptr && !kept) scalings->assign(size, {});
+  if (scalings != nullptr && scalings->size() != size) scalings->assign(size, {});  // empty: cold
   for (int k = 0; k < count; ++k) {
     const auto at = static_cast<std::size_t>(k);
     out.snr_min_db.push_back(smallest_input_snr_db(estimate, k));
@@ -57,10 +55,8 @@ EstimateStability judge_estimate(const FrmEstimate& estimate, const MatrixStack<
       out.lines.push_back(failed_line(JudgementStatus::no_estimate));
       continue;
     }
-    StabilityScalings& start = kept ? (*scalings)[at] : along_frequency;
-    out.lines.push_back(
-        judge_line(estimated_line(estimate, bias, k), nominal.response[k], nominal.controller, options, &start));
-    if (scalings != nullptr && !kept) (*scalings)[at] = start;
+    out.lines.push_back(judge_line(estimated_line(estimate, bias, k), nominal.response[k], nominal.controller, options,
+                                   scalings != nullptr ? &(*scalings)[at] : nullptr));
   }
   out.band = combine_lines(out.lines);
   return out;

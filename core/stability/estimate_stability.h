@@ -28,6 +28,7 @@ NominalLoop nominal_loop(const SampledModel& model, const Eigen::Ref<const Eigen
                          const std::vector<double>& frequency_hz, double rate_hz);
 
 /// Scalings of every line, kept from epoch to epoch: a window that moves on by a little starts next to its optimum.
+/// Empty: cold. The bounds agree with those of a cold start to the accuracy that SsvBounds states, not bit for bit.
 using EstimateScalings = std::vector<StabilityScalings>;
 
 struct EstimateStability {
@@ -47,8 +48,9 @@ double smallest_input_snr_db(const FrmEstimate& estimate, int k);
 EstimatedLine estimated_line(const FrmEstimate& estimate, const MatrixStack<double>& bias, int k);
 
 /// Judges every line and combines them. `nominal` has one response a line. A line without an estimate fails with a
-/// reason and p = 0. The scalings of ssv are handed from line to line; with `scalings` (empty at first) each line starts
-/// from its own of the last call instead. Both bounds agree with a cold start to the accuracy that SsvBounds states.
+/// reason and p = 0. `scalings`, if given, is the start of every line's ssv and left at its optimum. Without it every
+/// line starts cold: from one line to the next estimates move so much that the neighbour's scalings save nothing
+/// (bench_stability: 17 µs a line cold, 19 µs from the neighbour), and no line depends on another.
 EstimateStability judge_estimate(const FrmEstimate& estimate, const MatrixStack<double>& bias, const NominalLoop& nominal,
                                  const StabilityOptions& options = {}, EstimateScalings* scalings = nullptr);
 
