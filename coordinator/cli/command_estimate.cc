@@ -1,37 +1,16 @@
-// fatmc estimate: frequency response matrix of a periodic record, with variances and interpolation bias.
+// fatmc estimate: frequency response matrix of records, with variances and bias, by any of the estimators.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "coordinator/cli/command.h"
+#include "coordinator/cli/estimate_report.h"
 #include "coordinator/input/record_file.h"
-#include "core/base/text.h"
-#include "core/ident/fast_lpm.h"
-#include "core/ident/interpolation_bias.h"
 #include "core/record/column_file.h"
 
 namespace fatmc::cli {
 namespace {
-
-struct EstimateArguments {
-  std::vector<std::string> records;
-  std::string meta;
-  std::string method = "lpm";
-  LpmOptions lpm;
-  int skip_periods = 0;
-  bool speed_correction = false;
-  std::string directory;
-};
-
-struct EstimatedRecord {
-  Record record;
-  FrmEstimate frm;
-  MatrixStack<double> bias;
-  double speed_factor = 1.0;
-};
 
 /// V_trim / V_mean (3.4). V_trim is `trim_speed_m_s` of the record's TOML, or else the record's first sample.
 Result<double> speed_factor(const Record& record, double first_speed, const std::string& file) {
@@ -47,11 +26,48 @@ Result<double> speed_factor(const Record& record, double first_speed, const std:
   return factor;
 }
 
-/// Lines that hold no estimate, as an error; success where there are none.
-Status check_lines(const FrmEstimate& frm, const std::string& file) {
+/// A record ready for the method: period and lines known where it needs them, leading periods skipped.
+Result<Record> prepare_record(const EstimateArguments& arguments, EstimationMethod method, const std::string& file,
+                              double* first_speed) {
+  Result<Record> read = read_record(file, arguments.meta);
+  if (!read) return fail(read.error());
+  Record& record = *read;
+  if (Status status = complete_period(record, file); !status) {
+    if (needs_period(method)) return fail(status.error());
+    if (arguments.skip_periods != 0) {
+      return fail(Error{file, 0, "skip-periods", "the record has no periods to skip: " + status.error().message});
+    }
+    if (record.periods != 1) {  // one period that the record names still says which lines are excited
+      record.periods = record.period_samples = 0;
+      record.excited_lines.clear();
+    }
+  }
+  const int v = record.column("V");
+  *first_speed = v >= 0 ? record.samples(0, v) : 0.0;
+  if (Status status = skip_periods(record, arguments.skip_periods, file); !status) return fail(status.error());
+  if (!record.reference.empty() && record.reference.size() != record.input.size()) {
+    return fail(Error{file, 0, "reference", std::to_string(record.reference.size()) + " references for " +
+                                                std::to_string(record.input.size()) +
+                                                " inputs: the indirect estimate needs one a input; leave the "
+                                                "references out for a direct one"});
+  }
+  return read;
+}
+
+Measurement measurement_of(const Record& record) {
+  return {{record.excited_lines, record.period_samples, record.periods, record.rate_hz},
+          record.channels(record.output),
+          record.channels(record.input),
+          record.channels(record.reference)};
+}
+
+/// Periodic methods stand or fall with all their lines; the others leave out lines that nothing excites.
+Status check_lines(const EstimatedRecord& e, const std::string& file) {
+  const FrmEstimate& frm = e.response.frm;
+  const bool some = std::find(frm.status.begin(), frm.status.end(), LineStatus::ok) != frm.status.end();
   for (int k = 0; k < frm.line_count(); ++k) {
     const LineStatus status = frm.status[static_cast<std::size_t>(k)];
-    if (status == LineStatus::ok) continue;
+    if (status == LineStatus::ok || (some && !needs_period(e.method))) continue;
     const std::string what = status == LineStatus::singular_regressor
                                  ? "the excitation channels depend on each other, name independent ones"
                                  : "an input does not follow the references, leave it out";
@@ -60,162 +76,49 @@ Status check_lines(const FrmEstimate& frm, const std::string& file) {
   return {};
 }
 
-Result<EstimatedRecord> estimate(const EstimateArguments& arguments) {
+Result<EstimatedRecord> estimate(const EstimateArguments& arguments, EstimationMethod method) {
   const std::string& file = arguments.records.front();
-  Result<Record> read = read_record(file, arguments.meta);
-  if (!read) return fail(read.error());
   EstimatedRecord out;
-  out.record = std::move(*read);
-  Record& record = out.record;
-  if (Status status = complete_period(record, file); !status) return fail(status.error());
-  const int v = record.column("V");
-  const double first_speed = v >= 0 ? record.samples(0, v) : 0.0;
-  if (Status status = skip_periods(record, arguments.skip_periods, file); !status) return fail(status.error());
-
-  const bool indirect = !record.reference.empty();
-  if (indirect && record.reference.size() != record.input.size()) {
-    return fail(Error{file, 0, "reference", std::to_string(record.reference.size()) + " references for " +
-                                                std::to_string(record.input.size()) +
-                                                " inputs: the indirect estimate needs one a input; leave the "
-                                                "references out for a direct one"});
+  out.method = method;
+  std::vector<Measurement> measurements;
+  double first_speed = 0.0;
+  for (const std::string& path : arguments.records) {
+    double speed = 0.0;
+    Result<Record> record = prepare_record(arguments, method, path, &speed);
+    if (!record) return fail(record.error());
+    measurements.push_back(measurement_of(*record));
+    if (path != arguments.records.front()) continue;
+    out.record = std::move(*record);
+    first_speed = speed;
   }
-  Result<LpmGrid> grid =
-      LpmGrid::create({record.excited_lines, record.period_samples, record.periods, record.rate_hz}, arguments.lpm,
-                      static_cast<int>(record.input.size()));
-  if (!grid) {
-    Error error = grid.error();
+  Result<ResponseEstimate> response = estimate_response(method, measurements, arguments.options);
+  if (!response) {
+    Error error = response.error();
     if (error.file.empty()) error.file = file;
     return fail(error);
   }
-  FastLpm lpm(*grid, static_cast<int>(record.output.size()));
-  lpm.load(record.channels(record.output), record.channels(record.input));
-  out.frm = indirect ? lpm.indirect(spectra_at_lines(*grid, record.channels(record.reference))) : lpm.direct();
-  if (Status status = check_lines(out.frm, file); !status) return fail(status.error());
+  out.response = std::move(*response);
+  if (Status status = check_lines(out, file); !status) return fail(status.error());
   if (arguments.speed_correction) {
-    const Result<double> factor = speed_factor(record, first_speed, file);
+    const Result<double> factor = speed_factor(out.record, first_speed, file);
     if (!factor) return fail(factor.error());
     out.speed_factor = *factor;
-    scale_response(out.frm, *factor);
+    scale_response(out.response.frm, *factor);
+    for (int k = 0; k < out.response.bias.count(); ++k) out.response.bias[k] *= *factor;
   }
-  out.bias = interpolation_bias(*grid, out.frm);
   return out;
 }
 
-std::string frm_csv(const EstimatedRecord& e) {
-  std::string text = "line,frequency_hz,output,input,re,im,variance,bias\n";
-  const auto name = [&](int column) { return e.record.names[static_cast<std::size_t>(column)]; };
-  for (int k = 0; k < e.frm.line_count(); ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    const std::string head = std::to_string(e.frm.lines[at]) + "," + shortest(e.frm.frequency_hz[at]) + ",";
-    for (int i = 0; i < e.frm.n_out; ++i) {
-      for (int j = 0; j < e.frm.n_in; ++j) {
-        const std::complex<double> g = e.frm.G[k](i, j);
-        text += head + name(e.record.output[static_cast<std::size_t>(i)]) + "," +
-                name(e.record.input[static_cast<std::size_t>(j)]) + "," + shortest(g.real()) + "," +
-                shortest(g.imag()) + "," + shortest(e.frm.variance(k, i, j)) + "," + shortest(e.bias[k](i, j)) + "\n";
-      }
-    }
-  }
-  return text;
-}
-
-std::string estimate_json(const EstimateArguments& arguments, const EstimatedRecord& e) {
-  nlohmann::ordered_json json;
-  json["method"] = arguments.method;
-  json["indirect"] = e.frm.indirect;
-  json["order"] = arguments.lpm.order;
-  json["n_e"] = arguments.lpm.n_e;
-  json["q"] = e.frm.q;
-  json["n_transient"] = arguments.lpm.n_transient;
-  json["q_noise"] = e.frm.q_noise;
-  json["periods"] = e.record.periods;
-  json["skipped_periods"] = arguments.skip_periods;
-  json["period_samples"] = e.record.period_samples;
-  json["rate_hz"] = e.record.rate_hz;
-  json["lines"] = e.frm.lines;
-  json["speed_factor"] = arguments.speed_correction ? nlohmann::ordered_json(e.speed_factor) : nullptr;
-  std::vector<int> border;
-  for (int k = 0; k < e.frm.line_count(); ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    if (e.frm.border[at] != 0) border.push_back(e.frm.lines[at]);
-  }
-  json["border_lines"] = border;
-  json["conventions"] = {
-      {"line", "harmonic of one period; frequency_hz = line rate_hz / period_samples"},
-      {"dft", "N^(-1/2) sum x[n] exp(-j 2 pi m n / N) over the whole record, N = periods period_samples"},
-      {"transient", "polynomial of degree order through the n_transient nearest non-excited bins on each side, between "
-                    "the first excited bin - (periods - 1) and the last + (periods - 1), shifted at the ends; taken off "
-                    "outputs and inputs, not off references"},
-      {"window", "2 n_e + 1 nearest excited lines, n_e on each side, shifted at the ends"},
-      {"polynomial", "of degree order in the true frequency distance"},
-      {"variance", "total variance E|G - G0|^2 of the element, B_jj C_V,ii; |G - G0|^2 / variance ~ F(2, 2q)"},
-      {"bias", "|sum s_i (2 d_i / B_3dB)^E| |G|, E = order + 2 (order + 1 for odd orders), s the constant-term row of the "
-               "least-squares polynomial at the offsets d_i, B_3dB = 2 sqrt((1 - 1/sqrt 2) |g0 / g2|) from the "
-               "polynomial through the estimated element over the window, linear term dropped"}};
-  return json.dump(2) + "\n";
-}
-
-/// The four largest local maxima of one element's magnitude, by frequency.
-std::string peaks(const FrmEstimate& frm, int i, int j) {
-  std::vector<std::pair<double, int>> found;
-  const auto magnitude = [&](int k) { return std::abs(frm.G[k](i, j)); };
-  for (int k = 1; k + 1 < frm.line_count(); ++k) {
-    if (magnitude(k) > magnitude(k - 1) && magnitude(k) > magnitude(k + 1)) {
-      found.emplace_back(magnitude(k), k);
-    }
-  }
-  std::sort(found.rbegin(), found.rend());
-  found.resize(std::min<std::size_t>(found.size(), 4));
-  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  std::vector<std::string> parts;
-  for (const auto& [value, k] : found) {
-    parts.push_back(significant(frm.frequency_hz[static_cast<std::size_t>(k)], 4) + " Hz (" + significant(value, 3) + ")");
-  }
-  return parts.empty() ? "none" : join(parts);
-}
-
-void print_summary(const EstimateArguments& arguments, const EstimatedRecord& e) {
-  const FrmEstimate& frm = e.frm;
-  std::printf("%s: %d periods of %d samples at %s Hz, %d excited lines, %s to %s Hz\n",
-              arguments.records.front().c_str(), e.record.periods, e.record.period_samples,
-              shortest(e.record.rate_hz).c_str(), frm.line_count(), significant(frm.frequency_hz.front(), 4).c_str(),
-              significant(frm.frequency_hz.back(), 4).c_str());
-  std::printf("fast LPM, %s, order %d, n_E %d: q = %d degrees of freedom (noise %d)\n",
-              frm.indirect ? "indirect" : "direct", arguments.lpm.order, arguments.lpm.n_e, frm.q, frm.q_noise);
-  if (arguments.speed_correction) std::printf("speed correction (3.4): factor %s\n", significant(e.speed_factor, 5).c_str());
-  for (int i = 0; i < frm.n_out; ++i) {
-    for (int j = 0; j < frm.n_in; ++j) {
-      std::printf("  %s/%s: highest peaks %s\n",
-                  e.record.names[static_cast<std::size_t>(e.record.output[static_cast<std::size_t>(i)])].c_str(),
-                  e.record.names[static_cast<std::size_t>(e.record.input[static_cast<std::size_t>(j)])].c_str(),
-                  peaks(frm, i, j).c_str());
-    }
-  }
-  int biased = 0;
-  for (int k = 0; k < frm.line_count(); ++k) {
-    biased += static_cast<int>((e.bias[k].array() > 0.1 * frm.G[k].array().abs()).count());
-  }
-  if (biased > 0) {
-    const int smallest = ((arguments.lpm.order + 1) * frm.n_in + 1) / 2;
-    std::printf("interpolation bias above 10 %% of the element at %d of %d points: a smaller --n-e follows peaks more "
-                "closely, from %d on there is a variance\n",
-                biased, frm.line_count() * frm.n_out * frm.n_in, smallest);
-  }
-  int outliers = 0;
-  for (int k = 0; k < frm.line_count(); ++k) outliers += frm.outlier[k].cast<int>().sum();
-  if (outliers > 0) std::printf("%d input values lie below 3 sigma of their noise: distrust those lines (5.2.2)\n", outliers);
-  std::printf("written: %s/frm.csv, %s/estimate.json\n", arguments.directory.c_str(), arguments.directory.c_str());
-}
-
 Exit run_estimate(const EstimateArguments& arguments) {
-  if (arguments.records.size() != 1) {
-    return report(Error{"", 0, "RECORD.csv", "estimate takes one record at a time so far, " +
-                                                 std::to_string(arguments.records.size()) + " are named"});
+  const std::optional<EstimationMethod> method = estimation_method(arguments.method);
+  if (!method) {
+    return report(Error{"", 0, "--method", "\"" + arguments.method + "\" does not exist, there are: " +
+                                               estimation_method_names()});
   }
-  if (arguments.method != "lpm") {
-    return report(Error{"", 0, "--method", "\"" + arguments.method + "\" does not exist, there is: lpm"});
+  if (arguments.speed_correction && arguments.records.size() > 1) {
+    return report(Error{"", 0, "--speed-correction", "takes one record, correct several by their own speeds first"});
   }
-  const Result<EstimatedRecord> result = estimate(arguments);
+  const Result<EstimatedRecord> result = estimate(arguments, *method);
   if (!result) return report(result.error());
   std::filesystem::create_directories(arguments.directory);
   write_file_atomically(arguments.directory + "/frm.csv", frm_csv(*result));
@@ -228,15 +131,25 @@ Exit run_estimate(const EstimateArguments& arguments) {
 
 void add_estimate_command(CLI::App& app, Exit& exit) {
   auto arguments = std::make_shared<EstimateArguments>();
-  CLI::App* command = app.add_subcommand("estimate", "Frequency response matrix of a periodic record.");
+  EstimatorOptions& options = arguments->options;
+  CLI::App* command = app.add_subcommand("estimate", "Frequency response matrix of a record, or of several.");
   command->add_option("record", arguments->records, "RECORD.csv, its RECORD.toml beside it")->required();
-  command->add_option("--meta", arguments->meta, "the record's TOML where it is not beside the CSV");
-  command->add_option("--method", arguments->method, "lpm: fast local polynomial method")->capture_default_str();
-  command->add_option("--n-e", arguments->lpm.n_e, "excited lines on each side of a line")->capture_default_str();
-  command->add_option("--order", arguments->lpm.order, "degree of the polynomials")->capture_default_str();
-  command->add_option("--n-transient", arguments->lpm.n_transient, "non-excited bins on each side of a line")
+  command->add_option("--meta", arguments->meta, "the records' TOML where it is not beside the CSV");
+  command->add_option("--method", arguments->method,
+                      "lpm: fast local polynomial; tlpm: transient LPM; etfe; lrm: local rational; arbitrary: LPM for any "
+                      "excitation; robust: several records; welch: conditioned spectra")
       ->capture_default_str();
+  command->add_option("--n-e", options.n_e, "lines (bins) on each side of a line: 9, lrm 6");
+  command->add_option("--order", options.order, "degree of the polynomials")->capture_default_str();
+  command->add_option("--n-transient", options.n_transient,
+                      "non-excited bins on each side of a line: 5, tlpm with 5 periods and more: (periods + order)/2");
   command->add_option("--skip-periods", arguments->skip_periods, "leading periods to leave out")->capture_default_str();
+  command->add_option("--segment", options.welch.segment_samples, "welch: samples a segment, 0: a period or an eighth")
+      ->capture_default_str();
+  command->add_option("--overlap", options.welch.overlap, "welch: share of a segment")->capture_default_str();
+  command->add_option("--taper", options.welch.taper, "welch: hann or none")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Taper>{{"hann", Taper::hann}, {"none", Taper::none}}))
+      ->default_str("hann");
   command->add_flag("--speed-correction", arguments->speed_correction,
                     "scale with V_trim / V_mean; V must be an auxiliary channel");
   command->add_option("-o,--output", arguments->directory, "directory for frm.csv and estimate.json")->required();
