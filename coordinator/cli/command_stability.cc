@@ -46,7 +46,7 @@ std::vector<std::string> names_of(const Record& record, const std::vector<int>& 
 Result<Eigen::MatrixXd> controller_of(const StabilityArguments& arguments, const Record& record) {
   if (!arguments.gain) {
     if (record.controller_gain) return *record.controller_gain;
-    return fail(Error{arguments.estimate.record, 0, "controller_gain",
+    return fail(Error{arguments.estimate.records.front(), 0, "controller_gain",
                       "is missing: give the K of u = K (r - y) in the record's TOML, or --gain for K times the identity"});
   }
   const auto inputs = static_cast<Eigen::Index>(record.input.size());
@@ -63,21 +63,21 @@ Result<JudgedRecord> judge(const StabilityArguments& arguments) {
     return fail(Error{"", 0, "--intergrid", "is a share of the magnitude, 0 or more, for instance 0.03"});
   }
   if (arguments.gain && !std::isfinite(*arguments.gain)) return fail(Error{"", 0, "--gain", "is a finite number"});
-  Result<EstimatedRecord> estimated = estimate_record(arguments.estimate);
+  Result<EstimatedRecord> estimated = estimate_records(arguments.estimate, EstimationMethod::lpm);
   if (!estimated) return fail(estimated.error());
   const Record& record = estimated->record;
   const Result<Eigen::MatrixXd> controller = controller_of(arguments, record);
   if (!controller) return fail(controller.error());
   Result<NominalPlant> nominal = read_nominal_plant(
       arguments.nominal, {names_of(record, record.input), names_of(record, record.output), record.rate_hz, record.hold,
-                          *controller, estimated->frm.frequency_hz});
+                          *controller, estimated->response.frm.frequency_hz});
   if (!nominal) return fail(nominal.error());
-  EstimateStability stability = judge_estimate(estimated->frm, estimated->bias, nominal->loop, arguments.options);
+  EstimateStability stability = judge_estimate(estimated->response.frm, estimated->response.bias, nominal->loop, arguments.options);
   return JudgedRecord{std::move(*estimated), std::move(*nominal), std::move(stability)};
 }
 
 std::string lines_csv(const JudgedRecord& judged) {
-  const FrmEstimate& frm = judged.estimated.frm;
+  const FrmEstimate& frm = judged.estimated.response.frm;
   std::string text =
       "line,frequency_hz,hinf_nominal,ssv_nominal,hinf,ssv_upper,ssv_lower,kappa_hinf,kappa_ssv,p_hinf,p_ssv,snr_min_db\n";
   for (std::size_t k = 0; k < judged.stability.lines.size(); ++k) {
@@ -100,7 +100,7 @@ int certified_lines(const JudgedRecord& judged) {
 
 std::string summary_json(const StabilityArguments& arguments, const JudgedRecord& judged) {
   const BandStability& band = judged.stability.band;
-  const FrmEstimate& frm = judged.estimated.frm;
+  const FrmEstimate& frm = judged.estimated.response.frm;
   const auto optional = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   Json json;
   json["nominal_stable"] = band.nominally_stable_ssv;
@@ -148,7 +148,7 @@ std::string worst(const JudgedRecord& judged, const std::function<double(const L
     return sign * value(a) < sign * value(b);
   });
   return significant(value(*at), 5) + " at " +
-         significant(judged.estimated.frm.frequency_hz[static_cast<std::size_t>(at - lines.begin())], 4) + " Hz";
+         significant(judged.estimated.response.frm.frequency_hz[static_cast<std::size_t>(at - lines.begin())], 4) + " Hz";
 }
 
 void print_row(const char* what, const std::string& h_infinity, const std::string& ssv) {
@@ -157,7 +157,7 @@ void print_row(const char* what, const std::string& h_infinity, const std::strin
 
 void print_gates(const StabilityArguments& arguments, const JudgedRecord& judged) {
   const EstimateStability& s = judged.stability;
-  const std::vector<double>& f = judged.estimated.frm.frequency_hz;
+  const std::vector<double>& f = judged.estimated.response.frm.frequency_hz;
   const auto above = [&s](auto value) { return std::count_if(s.lines.begin(), s.lines.end(), [&](const auto& line) {
     return !(value(line) < 1.0);
   }); };
@@ -230,7 +230,7 @@ void add_stability_command(CLI::App& app, Exit& exit) {
   auto arguments = std::make_shared<StabilityArguments>();
   CLI::App* command = app.add_subcommand(
       "stability", "Confidence that the loop of a record is stable: H-infinity and structured singular value a line.");
-  command->add_option("record", arguments->estimate.record, "RECORD.csv, its RECORD.toml beside it")->required();
+  command->add_option("record", arguments->estimate.records, "RECORD.csv, its RECORD.toml beside it")->required();
   command
       ->add_option("--nominal", arguments->nominal,
                    "MODEL known to be stable: TOML of kind aircraft, state_space or frf, or an frm.csv")

@@ -1,10 +1,11 @@
-// fatmc tables: published figures beside ours, from databases that exist.
+// fatmc tables: published figures beside ours, from formulas and from databases that exist.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <memory>
 
+#include "campaigns/formulas/formula_tables.h"
 #include "campaigns/registry_summaries.h"
 #include "coordinator/cli/command.h"
 #include "coordinator/report/tables.h"
@@ -19,15 +20,13 @@ struct Options {
   std::string format = "text";
 };
 
-// The databases of the last run stand in results/last, one a line.
-Result<std::vector<std::string>> last_databases() {
+// The databases of the last run stand in results/last, one a line; none where nothing has run yet.
+std::vector<std::string> last_databases() {
   std::ifstream in("results/last");
   std::vector<std::string> out;
   for (std::string line; std::getline(in, line);) {
     if (!line.empty()) out.push_back(line);
   }
-  if (out.empty())
-    return fail(Error{"results/last", 0, "", "names no database: name one, or `fatmc run` a campaign first"});
   return out;
 }
 
@@ -39,29 +38,39 @@ Result<std::vector<TableRow>> rows_of(const std::string& path) {
   return study->tables(reader->spec(), reader->rows());
 }
 
+std::vector<std::string> names_of(const std::vector<TableRow>& rows) {
+  std::vector<std::string> names;
+  for (const TableRow& row : rows) {
+    if (std::find(names.begin(), names.end(), row.table) == names.end()) names.push_back(row.table);
+  }
+  return names;
+}
+
 Exit run(const Options& options) {
   std::vector<std::string> databases = options.databases;
-  if (databases.empty()) {
-    auto last = last_databases();
-    if (!last) return report(last.error());
-    databases = std::move(*last);
+  std::vector<TableRow> rows = formula_tables();
+  const std::vector<std::string> formulas = names_of(rows);
+  if (std::find(formulas.begin(), formulas.end(), options.only) != formulas.end()) {
+    databases.clear();  // a formula table needs no database, not even one that cannot be read
+  } else if (databases.empty()) {
+    databases = last_databases();
+  } else {
+    rows.clear();
   }
-  std::vector<TableRow> rows;
   for (const std::string& path : databases) {
     auto more = rows_of(path);
     if (!more) return report(more.error());
     rows.insert(rows.end(), more->begin(), more->end());
   }
   if (!options.only.empty()) {
-    std::vector<std::string> known;
-    for (const TableRow& row : rows) {
-      if (std::find(known.begin(), known.end(), row.table) == known.end()) known.push_back(row.table);
-    }
+    const std::vector<std::string> known = names_of(rows);
     if (std::find(known.begin(), known.end(), options.only) == known.end()) {
       std::string list;
       for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
       return report(Error{"", 0, "--only",
-                          "no table \"" + options.only + "\" in these databases, write one of: " + list});
+                          "no table \"" + options.only + "\" among formulas and databases" +
+                              (list.empty() ? "" : ", write one of: " + list) +
+                              "; further ones come with the campaign that fills them"});
     }
     std::erase_if(rows, [&](const TableRow& row) { return row.table != options.only; });
   }
@@ -75,9 +84,8 @@ Exit run(const Options& options) {
 
 void add_tables_command(CLI::App& app, Exit& exit) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("tables", "published figures beside ours, from databases");
-  command->add_option("DB", options->databases,
-                      "databases; without any, those of the last run (results/last)");
+  CLI::App* command = app.add_subcommand("tables", "published figures beside ours, from formulas and databases");
+  command->add_option("DB", options->databases, "databases; without any, the formula tables and those of the last run (results/last)");
   command->add_option("--only", options->only, "one table, for instance 5-5");
   command->add_option("--format", options->format, "text, markdown or json")
       ->check(CLI::IsMember({"text", "markdown", "json"}))

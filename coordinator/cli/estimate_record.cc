@@ -6,8 +6,6 @@
 
 #include "coordinator/input/record_file.h"
 #include "core/base/text.h"
-#include "core/ident/fast_lpm.h"
-#include "core/ident/interpolation_bias.h"
 
 namespace fatmc::cli {
 namespace {
@@ -26,11 +24,61 @@ Result<double> speed_factor(const Record& record, double first_speed, const std:
   return factor;
 }
 
-/// Lines that hold no estimate, as an error; success where there are none.
-Status check_lines(const FrmEstimate& frm, const std::string& file) {
+/// A record ready for the method: period and lines known where it needs them, leading periods skipped.
+Result<Record> prepare_record(const EstimateOptions& options, EstimationMethod method, const std::string& file,
+                              double* first_speed) {
+  Result<Record> read = read_record(file, options.meta);
+  if (!read) return fail(read.error());
+  Record& record = *read;
+  if (Status status = complete_period(record, file); !status) {
+    if (needs_period(method)) return fail(status.error());
+    if (options.skip_periods != 0) {
+      return fail(Error{file, 0, "skip-periods", "the record has no periods to skip: " + status.error().message});
+    }
+    if (record.periods != 1) {  // one period that the record names still says which lines are excited
+      record.periods = record.period_samples = 0;
+      record.excited_lines.clear();
+    }
+  }
+  const int v = record.column("V");
+  *first_speed = v >= 0 ? record.samples(0, v) : 0.0;
+  if (Status status = skip_periods(record, options.skip_periods, file); !status) return fail(status.error());
+  if (!record.reference.empty() && record.reference.size() != record.input.size()) {
+    return fail(Error{file, 0, "reference", std::to_string(record.reference.size()) + " references for " +
+                                                std::to_string(record.input.size()) +
+                                                " inputs: the indirect estimate needs one a input; leave the "
+                                                "references out for a direct one"});
+  }
+  return read;
+}
+
+Measurement measurement_of(const Record& record) {
+  return {{record.excited_lines, record.period_samples, record.periods, record.rate_hz},
+          record.channels(record.output),
+          record.channels(record.input),
+          record.channels(record.reference)};
+}
+
+std::string method_title(EstimationMethod method) {
+  switch (method) {
+    case EstimationMethod::lpm: return "fast LPM";
+    case EstimationMethod::tlpm: return "transient LPM";
+    case EstimationMethod::etfe: return "ETFE";
+    case EstimationMethod::lrm: return "local rational method";
+    case EstimationMethod::arbitrary: return "LPM for arbitrary excitation";
+    case EstimationMethod::robust: return "robust method";
+    case EstimationMethod::welch: return "Welch";
+  }
+  return "";
+}
+
+/// Periodic methods stand or fall with all their lines; the others leave out lines that nothing excites.
+Status check_lines(const EstimatedRecord& e, const std::string& file) {
+  const FrmEstimate& frm = e.response.frm;
+  const bool some = std::find(frm.status.begin(), frm.status.end(), LineStatus::ok) != frm.status.end();
   for (int k = 0; k < frm.line_count(); ++k) {
     const LineStatus status = frm.status[static_cast<std::size_t>(k)];
-    if (status == LineStatus::ok) continue;
+    if (status == LineStatus::ok || (some && !needs_period(e.method))) continue;
     const std::string what = status == LineStatus::singular_regressor
                                  ? "the excitation channels depend on each other, name independent ones"
                                  : "an input does not follow the references, leave it out";
@@ -41,58 +89,49 @@ Status check_lines(const FrmEstimate& frm, const std::string& file) {
 
 }  // namespace
 
-Result<EstimatedRecord> estimate_record(const EstimateOptions& options) {
-  const std::string& file = options.record;
-  Result<Record> read = read_record(file, options.meta);
-  if (!read) return fail(read.error());
+Result<EstimatedRecord> estimate_records(const EstimateOptions& options, EstimationMethod method) {
+  const std::string& file = options.records.front();
   EstimatedRecord out;
-  out.record = std::move(*read);
-  Record& record = out.record;
-  if (Status status = complete_period(record, file); !status) return fail(status.error());
-  const int v = record.column("V");
-  const double first_speed = v >= 0 ? record.samples(0, v) : 0.0;
-  if (Status status = skip_periods(record, options.skip_periods, file); !status) return fail(status.error());
-
-  const bool indirect = !record.reference.empty();
-  if (indirect && record.reference.size() != record.input.size()) {
-    return fail(Error{file, 0, "reference", std::to_string(record.reference.size()) + " references for " +
-                                                std::to_string(record.input.size()) +
-                                                " inputs: the indirect estimate needs one a input; leave the "
-                                                "references out for a direct one"});
+  out.method = method;
+  std::vector<Measurement> measurements;
+  double first_speed = 0.0;
+  for (const std::string& path : options.records) {
+    double speed = 0.0;
+    Result<Record> record = prepare_record(options, method, path, &speed);
+    if (!record) return fail(record.error());
+    measurements.push_back(measurement_of(*record));
+    if (path != options.records.front()) continue;
+    out.record = std::move(*record);
+    first_speed = speed;
   }
-  Result<LpmGrid> grid =
-      LpmGrid::create({record.excited_lines, record.period_samples, record.periods, record.rate_hz}, options.lpm,
-                      static_cast<int>(record.input.size()));
-  if (!grid) {
-    Error error = grid.error();
+  Result<ResponseEstimate> response = estimate_response(method, measurements, options.estimator);
+  if (!response) {
+    Error error = response.error();
     if (error.file.empty()) error.file = file;
     return fail(error);
   }
-  FastLpm lpm(*grid, static_cast<int>(record.output.size()));
-  lpm.load(record.channels(record.output), record.channels(record.input));
-  out.frm = indirect ? lpm.indirect(spectra_at_lines(*grid, record.channels(record.reference))) : lpm.direct();
-  if (Status status = check_lines(out.frm, file); !status) return fail(status.error());
+  out.response = std::move(*response);
+  if (Status status = check_lines(out, file); !status) return fail(status.error());
   if (options.speed_correction) {
-    const Result<double> factor = speed_factor(record, first_speed, file);
+    const Result<double> factor = speed_factor(out.record, first_speed, file);
     if (!factor) return fail(factor.error());
     out.speed_factor = *factor;
-    scale_response(out.frm, *factor);
+    scale_response(out.response.frm, *factor);
+    for (int k = 0; k < out.response.bias.count(); ++k) out.response.bias[k] *= *factor;
   }
-  out.bias = interpolation_bias(*grid, out.frm);
   return out;
 }
 
 void add_estimate_options(CLI::App& command, EstimateOptions& options) {
-  command.add_option("--meta", options.meta, "the record's TOML where it is not beside the CSV");
-  command.add_option("--n-e", options.lpm.n_e, "excited lines on each side of a line")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  command.add_option("--order", options.lpm.order, "degree of the polynomials")
+  command.add_option("--meta", options.meta, "the records' TOML where it is not beside the CSV");
+  command.add_option("--n-e", options.estimator.n_e, "lines (bins) on each side of a line: 9, lrm 6")
+      ->check(CLI::Range(1, 100000));
+  command.add_option("--order", options.estimator.order, "degree of the polynomials")
       ->check(CLI::Range(0, 10))
       ->capture_default_str();
-  command.add_option("--n-transient", options.lpm.n_transient, "non-excited bins on each side of a line")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
+  command.add_option("--n-transient", options.estimator.n_transient,
+                     "non-excited bins on each side of a line: 5, tlpm with 5 periods and more: (periods + order)/2")
+      ->check(CLI::Range(1, 100000));
   command.add_option("--skip-periods", options.skip_periods, "leading periods to leave out")
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str();
@@ -101,13 +140,20 @@ void add_estimate_options(CLI::App& command, EstimateOptions& options) {
 }
 
 void print_estimate_head(const EstimateOptions& options, const EstimatedRecord& e) {
-  const FrmEstimate& frm = e.frm;
-  std::printf("%s: %d periods of %d samples at %s Hz, %d excited lines, %s to %s Hz\n",
-              options.record.c_str(), e.record.periods, e.record.period_samples,
-              shortest(e.record.rate_hz).c_str(), frm.line_count(), significant(frm.frequency_hz.front(), 4).c_str(),
+  const FrmEstimate& frm = e.response.frm;
+  if (e.record.periods > 0) {
+    std::printf("%s: %d periods of %d samples at %s Hz, ", options.records.front().c_str(), e.record.periods,
+                e.record.period_samples, shortest(e.record.rate_hz).c_str());
+  } else {
+    std::printf("%s: %d samples at %s Hz, ", options.records.front().c_str(), e.record.sample_count(),
+                shortest(e.record.rate_hz).c_str());
+  }
+  std::printf("%d lines, %s to %s Hz\n", frm.line_count(), significant(frm.frequency_hz.front(), 4).c_str(),
               significant(frm.frequency_hz.back(), 4).c_str());
-  std::printf("fast LPM, %s, order %d, n_E %d: q = %d degrees of freedom (noise %d)\n",
-              frm.indirect ? "indirect" : "direct", options.lpm.order, options.lpm.n_e, frm.q, frm.q_noise);
+  std::printf("%s, %s: q = %d degrees of freedom", method_title(e.method).c_str(), frm.indirect ? "indirect" : "direct",
+              frm.q);
+  if (frm.q_noise > 0) std::printf(" (noise %d)", frm.q_noise);
+  std::printf("\n");
   if (options.speed_correction) std::printf("speed correction (3.4): factor %s\n", significant(e.speed_factor, 5).c_str());
 }
 

@@ -1,40 +1,39 @@
-// From a record's files to its estimate: what `fatmc estimate` and the commands that build on it have in common.
+// From records' files to their estimate: what `fatmc estimate` and the commands that build on it have in common.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "core/base/error.h"
-#include "core/ident/frm_estimate.h"
-#include "core/ident/lpm_grid.h"
-#include "core/ident/matrix_stack.h"
+#include "core/ident/estimators.h"
 #include "core/record/record.h"
 
 namespace fatmc::cli {
 
 struct EstimateOptions {
-  std::string record;  ///< CSV
-  std::string meta;    ///< its TOML; empty: beside it
-  LpmOptions lpm;
+  std::vector<std::string> records;  ///< CSV; several only where the method takes several experiments
+  std::string meta;                  ///< their TOML; empty: beside each
+  EstimatorOptions estimator;
   int skip_periods = 0;
   bool speed_correction = false;
 };
 
 struct EstimatedRecord {
-  Record record;
-  FrmEstimate frm;
-  MatrixStack<double> bias;   ///< interpolation bias
+  EstimationMethod method = EstimationMethod::lpm;
+  Record record;  ///< the first one; the others agree with it in all that is reported
+  ResponseEstimate response;
   double speed_factor = 1.0;  ///< by which G has been scaled (3.4)
 };
 
-/// Adds the options to a command that takes a record.
+/// Adds the options, the records apart, to a command that takes records.
 void add_estimate_options(CLI::App& command, EstimateOptions& options);
 
-/// Reads the record, completes its period and lines, estimates by the fast LPM. Every line holds an estimate; the error
-/// names the line that does not, and what would mend it.
-Result<EstimatedRecord> estimate_record(const EstimateOptions& options);
+/// Reads the records, completes period and lines where the method needs them, estimates. The error names the line or the
+/// property that stands in the way, and what would mend it.
+Result<EstimatedRecord> estimate_records(const EstimateOptions& options, EstimationMethod method);
 
-/// Two lines for the terminal: what the record holds and how it was estimated.
+/// Two or three lines for the terminal: what the record holds and how it was estimated.
 void print_estimate_head(const EstimateOptions& options, const EstimatedRecord& e);
 
 }  // namespace fatmc::cli

@@ -180,7 +180,7 @@ void FastLpm::load_batch(int batch) {
   for (int c = 0; c < n_z_; ++c) {
     const std::complex<double>* z = spectra_.col(c).data();
     for (int lane = 0; lane < kLanes; ++lane) {
-      const auto where = grid_.transient_bins(line_of(batch, lane, lines));
+      const auto where = grid_.transient().bins(line_of(batch, lane, lines));
       for (int i = 0; i < bins; ++i) {
         window_[index(i)].re[lane] = z[where[index(i)]].real();
         window_[index(i)].im[lane] = z[where[index(i)]].imag();
@@ -230,9 +230,9 @@ void FastLpm::lay_out_transient_weights() {
       const int k = line_of(batch, lane, lines);
       Lanes* weights = transient_.data() + batch * (1 + q) * bins;
       for (int i = 0; i < q * bins; ++i) {
-        weights[i][lane] = std::sqrt(grid_.mu_poly(k)) * grid_.transient_complement(k)[index(i)];
+        weights[i][lane] = std::sqrt(grid_.transient().mu_poly(k)) * grid_.transient().complement(k)[index(i)];
       }
-      for (int i = 0; i < bins; ++i) weights[q * bins + i][lane] = grid_.transient_weights(k)[index(i)];
+      for (int i = 0; i < bins; ++i) weights[q * bins + i][lane] = grid_.transient().weights(k)[index(i)];
     }
   }
 }

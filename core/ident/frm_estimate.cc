@@ -11,6 +11,7 @@ void scale_response(FrmEstimate& estimate, double factor) {
   for (int k = 0; k < estimate.line_count(); ++k) {
     estimate.G[k] *= factor;
     estimate.B[k] *= factor * factor;  // C_V stays the covariance of v = y - G u in the record's own units
+    if (estimate.element_variance.count() > 0) estimate.element_variance[k] *= factor * factor;
   }
 }
 

@@ -25,7 +25,7 @@ struct FrmEstimate {
   bool indirect = false;
   int q = 0;        ///< complex degrees of freedom of C_Z and C_V
   int q_noise = 0;  ///< of C_Z_noise and C_V_noise
-  std::vector<int> lines;
+  std::vector<int> lines;  ///< harmonics of one period; DFT bins of the record or segment where there is no period
   std::vector<double> frequency_hz;
 
   MatrixStack<std::complex<double>> G;          ///< n_out x n_in
@@ -43,9 +43,19 @@ struct FrmEstimate {
   std::vector<double> regressor_condition;  ///< largest over smallest |R_jj| of the QR: a lower bound
   std::vector<double> input_condition;      ///< |G_ur|_F |G_ur^-1|_F (indirect); 1 for a direct estimate
 
+  /// Empty, or the total variance of every element (n_out x n_in) where it does not factor into B and C_V, as for a
+  /// rational fit whose denominator differs from channel to channel. B and C_V are zero then.
+  MatrixStack<double> element_variance;
+  /// Empty (all inputs at all lines), or n_in x 1: 1 where the line holds an estimate for the input (zippered lines).
+  MatrixStack<std::uint8_t> estimated;
+
   [[nodiscard]] int line_count() const { return static_cast<int>(lines.size()); }
+  [[nodiscard]] bool holds(int k, int j) const { return estimated.count() == 0 || estimated[k](j, 0) != 0; }
   /// Total variance of an element, E|G_ij - G0_ij|^2 = B_jj C_V,ii.
-  [[nodiscard]] double variance(int k, int i, int j) const { return B[k](j, j).real() * C_V[k](i, i).real(); }
+  [[nodiscard]] double variance(int k, int i, int j) const {
+    if (element_variance.count() > 0) return element_variance[k](i, j);
+    return B[k](j, j).real() * C_V[k](i, i).real();
+  }
   /// The same from the noise alone.
   [[nodiscard]] double noise_variance(int k, int i, int j) const {
     return B[k](j, j).real() * C_V_noise[k](i, i).real();

@@ -65,8 +65,9 @@ Result<LpmGrid> LpmGrid::create(PeriodicExperiment experiment, LpmOptions option
   grid.options_ = options;
   grid.n_in_ = n_in;
   grid.place_windows();
-  grid.place_transient_windows();
-  if (grid.transient_bins_.empty()) {
+  grid.transient_ = TransientWindows(grid.experiment_.lines, grid.experiment_.period_samples, grid.experiment_.periods,
+                                     2 * options.n_transient, options.order);
+  if (grid.transient_.line_count() == 0) {
     return fail(Error{"", 0, "n-transient", "there are fewer than " + std::to_string(2 * options.n_transient) +
                                                 " non-excited DFT bins in the excited band, take a smaller number"});
   }
@@ -80,13 +81,6 @@ double LpmGrid::frequency_hz(int k) const {
 
 std::span<const double> LpmGrid::offsets_hz(int k) const { return slice(offsets_hz_, k, window()); }
 std::span<const double> LpmGrid::scaled_offsets(int k) const { return slice(scaled_offsets_, k, window()); }
-std::span<const int> LpmGrid::transient_bins(int k) const { return slice(transient_bins_, k, 2 * options_.n_transient); }
-std::span<const double> LpmGrid::transient_weights(int k) const {
-  return slice(transient_weights_, k, 2 * options_.n_transient);
-}
-std::span<const double> LpmGrid::transient_complement(int k) const {
-  return slice(transient_complement_, k, 2 * options_.n_transient * q_noise());
-}
 std::span<const double> LpmGrid::constant_row(int k) const { return slice(constant_rows_, k, window()); }
 std::span<const double> LpmGrid::quadratic_row(int k) const { return slice(quadratic_rows_, k, window()); }
 
@@ -103,47 +97,6 @@ void LpmGrid::place_windows() {
     }
     scale_hz_.push_back(largest);
     for (const double offset : offsets_hz(k)) scaled_offsets_.push_back(offset / largest);
-  }
-}
-
-void LpmGrid::place_transient_windows() {
-  const int periods = experiment_.periods;
-  const int low = bin(0) - (periods - 1);
-  // Above half the rate there is nothing new; the half itself is real, not complex.
-  const int high = std::min(bin(line_count() - 1) + (periods - 1), (total_samples() - 1) / 2);
-  std::vector<int> candidates;
-  for (int m = low, line = 0; m <= high; ++m) {
-    if (line < line_count() && m == bin(line)) {
-      ++line;
-    } else {
-      candidates.push_back(m);
-    }
-  }
-  const int n = options_.n_transient;
-  if (static_cast<int>(candidates.size()) < 2 * n) return;
-  bin_count_ = high + 1;
-  for (int k = 0; k < line_count(); ++k) {
-    const auto above = std::lower_bound(candidates.begin(), candidates.end(), bin(k)) - candidates.begin();
-    const int start = std::clamp(static_cast<int>(above) - n, 0, static_cast<int>(candidates.size()) - 2 * n);
-    const auto bins = std::span(candidates).subspan(index(start), index(2 * n));
-    transient_bins_.insert(transient_bins_.end(), bins.begin(), bins.end());
-    const double largest = std::max(std::abs(bins.front() - bin(k)), std::abs(bins.back() - bin(k)));
-    std::vector<double> x;
-    for (const int m : bins) x.push_back((m - bin(k)) / largest);
-
-    // K^T = Q [R; 0]; the constant term of the fit is the first row of R^-1 Q_1^T, the residuals' coordinates are
-    // Q_2^T Z.
-    const Eigen::MatrixXd basis = vandermonde(x, options_.order);
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(basis);
-    const Eigen::MatrixXd q = qr.householderQ();
-    const Eigen::Index p = basis.cols();
-    Eigen::VectorXd row = Eigen::VectorXd::Unit(p, 0);
-    qr.matrixQR().topRows(p).triangularView<Eigen::Upper>().transpose().solveInPlace(row);
-    const Eigen::VectorXd t = q.leftCols(p) * row;
-    transient_weights_.insert(transient_weights_.end(), t.begin(), t.end());
-    mu_.push_back(1.0 + t.squaredNorm());
-    const Eigen::MatrixXd rest = q.rightCols(2 * n - p);
-    transient_complement_.insert(transient_complement_.end(), rest.data(), rest.data() + rest.size());
   }
 }
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/ident/transient_windows.h"
 
 namespace fatmc {
 
@@ -54,7 +55,7 @@ class LpmGrid {
   /// DFT bin of line k.
   [[nodiscard]] int bin(int k) const { return experiment_.periods * experiment_.lines[static_cast<std::size_t>(k)]; }
   /// Bins 0 ... bin_count()-1 are all that an estimate reads.
-  [[nodiscard]] int bin_count() const { return bin_count_; }
+  [[nodiscard]] int bin_count() const { return transient_.bin_count(); }
 
   /// Index of the first line of line k's window.
   [[nodiscard]] int first(int k) const { return first_[static_cast<std::size_t>(k)]; }
@@ -67,15 +68,8 @@ class LpmGrid {
   /// Largest distance of the window in Hz.
   [[nodiscard]] double scale_hz(int k) const { return scale_hz_[static_cast<std::size_t>(k)]; }
 
-  /// The 2n non-excited bins of line k, ascending.
-  [[nodiscard]] std::span<const int> transient_bins(int k) const;
-  /// t with T^(k) = sum_i t_i Z(bin_i): the constant term of the fit (2.109, 2.110).
-  [[nodiscard]] std::span<const double> transient_weights(int k) const;
-  /// 2n x q_noise with orthonormal columns, orthogonal to the polynomials: residuals of the fit in coordinates of
-  /// their own, e = complement^T Z_n, so that residual residual^H = e e^H (2.112). Column-major.
-  [[nodiscard]] std::span<const double> transient_complement(int k) const;
-  /// Variance of Z^ = Z - T^ over that of Z: 1 + |t|^2 (2.114, 2.115).
-  [[nodiscard]] double mu_poly(int k) const { return mu_[static_cast<std::size_t>(k)]; }
+  /// The 2n non-excited bins of every line and the fits through them.
+  [[nodiscard]] const TransientWindows& transient() const { return transient_; }
 
   /// Constant and quadratic term (per Hz^2) of a polynomial of degree max(R, 2) through the window (appendix C.3).
   [[nodiscard]] std::span<const double> constant_row(int k) const;
@@ -88,17 +82,14 @@ class LpmGrid {
  private:
   LpmGrid() = default;
   void place_windows();
-  void place_transient_windows();
   void fit_bias_polynomials();
 
   PeriodicExperiment experiment_;
   LpmOptions options_;
   int n_in_ = 0;
-  int bin_count_ = 0;
   std::vector<int> first_;
   std::vector<double> offsets_hz_, scaled_offsets_, scale_hz_;
-  std::vector<int> transient_bins_;
-  std::vector<double> transient_weights_, transient_complement_, mu_;
+  TransientWindows transient_;
   std::vector<double> constant_rows_, quadratic_rows_, bias_moment_;
 };
 

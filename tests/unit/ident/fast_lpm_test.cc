@@ -86,7 +86,7 @@ TEST(FastLpm, AgreesWithTheTextbookFormulasWrittenOut) {
     Eigen::MatrixXcd z_n(6, 10);
     Eigen::MatrixXd k_n(3, 10);
     for (int i = 0; i < 10; ++i) {
-      const int m = grid.transient_bins(k)[static_cast<std::size_t>(i)];
+      const int m = grid.transient().bins(k)[static_cast<std::size_t>(i)];
       z_n.col(i) = all.row(m).transpose();
       const double r = m - grid.bin(k);
       k_n.col(i) << 1.0, r, r * r;
@@ -94,10 +94,10 @@ TEST(FastLpm, AgreesWithTheTextbookFormulasWrittenOut) {
     const Eigen::MatrixXcd theta = z_n * k_n.transpose() * (k_n * k_n.transpose()).inverse();
     mean.row(k) = all.row(grid.bin(k)) - theta.col(0).transpose();
     const Eigen::MatrixXcd residual = z_n - theta * k_n;
-    const Eigen::MatrixXcd noise = grid.mu_poly(k) * residual * residual.adjoint() / 7.0;
+    const Eigen::MatrixXcd noise = grid.transient().mu_poly(k) * residual * residual.adjoint() / 7.0;
     EXPECT_LT((estimate.C_Z_noise[k] - noise).norm(), 1e-9 * noise.norm());
     const double mu = 1.0 + (k_n * k_n.transpose()).inverse()(0, 0);
-    EXPECT_NEAR(grid.mu_poly(k), mu, 1e-8 * mu);
+    EXPECT_NEAR(grid.transient().mu_poly(k), mu, 1e-8 * mu);
   }
   for (int k = 0; k < grid.line_count(); ++k) {
     Eigen::MatrixXcd z_n(6, 19), l(9, 19);

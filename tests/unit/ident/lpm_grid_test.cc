@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 using namespace test;
 
 std::vector<int> bins(const LpmGrid& grid, int k) {
-  const auto span = grid.transient_bins(k);
+  const auto span = grid.transient().bins(k);
   return {span.begin(), span.end()};
 }
 
@@ -60,14 +60,14 @@ TEST(LpmGrid, TransientWeightsReproducePolynomialsAndResidualsIgnoreThem) {
     for (int degree = 0; degree <= 2; ++degree) {
       double value = 0.0;
       for (int i = 0; i < 10; ++i) {
-        value += grid.transient_weights(k)[static_cast<std::size_t>(i)] *
+        value += grid.transient().weights(k)[static_cast<std::size_t>(i)] *
                  std::pow(bins(grid, k)[static_cast<std::size_t>(i)] - grid.bin(k), degree);
       }
       EXPECT_NEAR(value, degree == 0 ? 1.0 : 0.0, 1e-10);
       for (int r = 0; r < 7; ++r) {
         double residual = 0.0;
         for (int i = 0; i < 10; ++i) {
-          residual += grid.transient_complement(k)[static_cast<std::size_t>(10 * r + i)] *
+          residual += grid.transient().complement(k)[static_cast<std::size_t>(10 * r + i)] *
                       std::pow((bins(grid, k)[static_cast<std::size_t>(i)] - grid.bin(k)) / 20.0, degree);
         }
         EXPECT_NEAR(residual, 0.0, 1e-13);

@@ -1,0 +1,34 @@
+// What an estimator is given: one experiment's samples, and options that hold for all methods.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/ident/frm_estimate.h"
+#include "core/ident/lpm_grid.h"
+
+namespace fatmc {
+
+struct Measurement {
+  PeriodicExperiment experiment;  ///< periods and lines 0 and empty for an aperiodic record; rate_hz always
+  Eigen::MatrixXd outputs;        ///< samples x n_out
+  Eigen::MatrixXd inputs;         ///< samples x n_in
+  Eigen::MatrixXd references;     ///< samples x n_in (indirect) or samples x 0 (direct)
+
+  [[nodiscard]] int n_out() const { return static_cast<int>(outputs.cols()); }
+  [[nodiscard]] int n_in() const { return static_cast<int>(inputs.cols()); }
+  [[nodiscard]] bool indirect() const { return references.cols() > 0; }
+};
+
+/// A response, and what the method alone knows of it.
+struct ResponseEstimate {
+  FrmEstimate frm;
+  MatrixStack<double> bias;       ///< n_out x n_in a line; empty where the method has no estimate of its bias
+  MatrixStack<double> coherence;  ///< n_out x 1 a line, multiple coherence; empty for methods without one
+  std::vector<int> fallback;      ///< lines (harmonics) where a simpler method stepped in
+  std::vector<std::string> notes; ///< one sentence each, for the reader of the result
+};
+
+}  // namespace fatmc
