@@ -270,6 +270,55 @@ const FrmEstimate& FastLpm::direct() {
   return estimate_;
 }
 
+// G_Z of [Y; U] to G^T in solved_ and B in b_; returns the condition of G_ur.
+Lanes FastLpm::solve_indirect(const ComplexLanes* a) {
+  const int n = n_in_;
+  // G_ur^T G^T = G_yr^T and G_ur^T K^T = I, by the QR of G_ur^T.
+  ComplexLanes* g_ur = small_.data();
+  std::copy(g_z_.begin() + n * n_out_, g_z_.begin() + n * n_z_, g_ur);
+  const Lanes norm = square_norm(g_ur, n * n);
+  std::copy(g_z_.begin(), g_z_.begin() + n * n_out_, solved_.begin());
+  unit(solved_.data() + n * n_out_, n);
+  ComplexLanes* diagonal = g_ur + n * n;
+  householder_factor(g_ur, n, n, diagonal);
+  householder_apply(g_ur, n, n, solved_.data(), n_z_);
+  back_substitute(g_ur, n, n, diagonal, 0, solved_.data(), n, n_z_);
+  const ComplexLanes* k_t = solved_.data() + n * n_out_;
+  const Lanes condition = (norm * square_norm(k_t, n * n)).sqrt();
+  const Lanes regular = (diagonal_ratio(diagonal, n) < kSingular)
+                            .select(condition, Lanes::Constant(std::numeric_limits<double>::infinity()));
+  // B = K^T A conj(K), K = G_ur^-1
+  for (int m = 0; m < n; ++m) {
+    for (int j = 0; j < n; ++j) {
+      ComplexLanes sum = zero_lanes();
+      for (int s = 0; s < n; ++s) {
+        ComplexLanes row = zero_lanes();
+        for (int t = 0; t < n; ++t) add_product(row, k_t[t * n + j], a[s * n + t]);
+        add_product_conj(sum, row, k_t[s * n + m]);
+      }
+      b_[index(m * n + j)] = sum;
+    }
+  }
+  return regular;
+}
+
+// v = y - G u of the residuals e: C_V = v v^H / rows into c_v_, never negative, however much of the noise cancels.
+void FastLpm::propagate(const ComplexLanes* g, const ComplexLanes* e, int stride, int rows, bool subtract) {
+  for (int i = 0; i < n_out_; ++i) {
+    for (int r = 0; r < rows; ++r) {
+      ComplexLanes v = e[i * stride + r];
+      for (int m = 0; subtract && m < n_in_; ++m) {
+        const ComplexLanes& gain = g[i * n_in_ + m];
+        const ComplexLanes& u = e[(n_out_ + m) * stride + r];
+        v.re -= gain.re * u.re - gain.im * u.im;
+        v.im -= gain.re * u.im + gain.im * u.re;
+      }
+      v_[index(i * rows + r)] = v;
+    }
+  }
+  covariance(v_.data(), rows, rows, n_out_, 1.0 / rows, c_v_.data());
+}
+
 // Regression of one batch on factors that are known: estimate, covariances and B, then out of the lanes.
 void FastLpm::finish_batch(int batch, const ComplexLanes* factors) {
   const FactorLayout layout(grid_);
@@ -296,62 +345,21 @@ void FastLpm::finish_batch(int batch, const ComplexLanes* factors) {
   const ComplexLanes* a = factors + layout.a();
   ComplexLanes* g = g_z_.data();  // G^T, n_in x n_out
   if (is_indirect) {
-    // G_ur^T G^T = G_yr^T and G_ur^T K^T = I, by the QR of G_ur^T.
-    ComplexLanes* g_ur = small_.data();
-    std::copy(g_z_.begin() + n * n_out_, g_z_.begin() + n * n_z_, g_ur);
-    const Lanes norm = square_norm(g_ur, n * n);
-    std::copy(g_z_.begin(), g_z_.begin() + n * n_out_, solved_.begin());
-    unit(solved_.data() + n * n_out_, n);
-    ComplexLanes* diagonal = g_ur + n * n;
-    householder_factor(g_ur, n, n, diagonal);
-    householder_apply(g_ur, n, n, solved_.data(), n_z_);
-    back_substitute(g_ur, n, n, diagonal, 0, solved_.data(), n, n_z_);
+    input_condition = solve_indirect(a);
     g = solved_.data();
-    const ComplexLanes* k_t = solved_.data() + n * n_out_;
-    input_condition = (norm * square_norm(k_t, n * n)).sqrt();
-    input_condition = (diagonal_ratio(diagonal, n) < kSingular)
-                          .select(input_condition, Lanes::Constant(std::numeric_limits<double>::infinity()));
-    // B = K^T A conj(K), K = G_ur^-1
-    for (int m = 0; m < n; ++m) {
-      for (int j = 0; j < n; ++j) {
-        ComplexLanes sum = zero_lanes();
-        for (int s = 0; s < n; ++s) {
-          ComplexLanes row = zero_lanes();
-          for (int t = 0; t < n; ++t) add_product(row, k_t[t * n + j], a[s * n + t]);
-          add_product_conj(sum, row, k_t[s * n + m]);
-        }
-        b_[index(m * n + j)] = sum;
-      }
-    }
   } else {
     std::copy(a, a + n * n, b_.begin());
   }
 
-  // v = y - G u of the residuals: C_V = v v^H / q is never negative, however much of the noise cancels.
-  const auto propagate = [&](const ComplexLanes* e, int stride, int rows, bool subtract) {
-    for (int i = 0; i < n_out_; ++i) {
-      for (int r = 0; r < rows; ++r) {
-        ComplexLanes v = e[i * stride + r];
-        for (int m = 0; subtract && m < n; ++m) {
-          const ComplexLanes& gain = g[i * n + m];
-          const ComplexLanes& u = e[(n_out_ + m) * stride + r];
-          v.re -= gain.re * u.re - gain.im * u.im;
-          v.im -= gain.re * u.im + gain.im * u.re;
-        }
-        v_[index(i * rows + r)] = v;
-      }
-    }
-    covariance(v_.data(), rows, rows, n_out_, 1.0 / rows, c_v_.data());
-  };
   const int lines = grid_.line_count();
   const auto store = [&](const std::vector<ComplexLanes>& from, MatrixStack<std::complex<double>>& to, int lane,
                          int k) {
     const int count = to.rows() * to.cols();
     for (int i = 0; i < count; ++i) to.data(k)[i] = {from[index(i)].re[lane], from[index(i)].im[lane]};
   };
-  propagate(noise_.data() + batch * q_noise * n_z_, q_noise, q_noise, true);
+  propagate(g, noise_.data() + batch * q_noise * n_z_, q_noise, q_noise, true);
   for (int lane = 0; lane < kLanes; ++lane) store(c_v_, estimate_.C_V_noise, lane, line_of(batch, lane, lines));
-  propagate(residual, w_count, q, is_indirect);
+  propagate(g, residual, w_count, q, is_indirect);
   for (int lane = 0; lane < kLanes; ++lane) {
     const int k = line_of(batch, lane, lines);
     store(c_v_, estimate_.C_V, lane, k);

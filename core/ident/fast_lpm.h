@@ -69,6 +69,8 @@ class FastLpm {
   void lay_out_transient_weights();
   void load_batch(int batch);
   void begin(bool indirect);
+  Lanes solve_indirect(const ComplexLanes* a);
+  void propagate(const ComplexLanes* g, const ComplexLanes* e, int stride, int rows, bool subtract);
   void finish_batch(int batch, const ComplexLanes* factors);
 
   LpmGrid grid_;

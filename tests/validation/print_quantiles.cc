@@ -1,9 +1,11 @@
-// Prints "f q p quantile cdf(quantile)" and "t dof p quantile" lines for stats_reference.py.
+// Prints "f q p quantile cdf(quantile)", "t dof p quantile" and "r s_u s_y re(rho) im(rho) radius probability" lines for
+// stats_reference.py.
 #include <cstdio>
 
 #include "core/base/text.h"
 #include "core/stats/confidence.h"
 #include "core/stats/intervals.h"
+#include "core/stats/ratio_density.h"
 
 int main() {
   using fatmc::shortest;
@@ -13,6 +15,18 @@ int main() {
       std::printf("f %s %s %s %s\n", shortest(q).c_str(), shortest(p).c_str(), shortest(x).c_str(),
                   shortest(fatmc::f_cdf_2_2q(x, q)).c_str());
       std::printf("t %s %s %s\n", shortest(q).c_str(), shortest(p).c_str(), shortest(fatmc::t_quantile(p, q)).c_str());
+    }
+  }
+  for (const double input : {0.02, 0.1, 0.4}) {
+    for (const double output : {0.1, 0.3, 1.0}) {
+      for (const std::complex<double> rho : {std::complex<double>(0.0), std::complex<double>(-0.6, 0.5)}) {
+        for (const double size : {0.5, 2.0, 5.0}) {
+          const double radius = size * std::hypot(input, output);
+          std::printf("r %s %s %s %s %s %s\n", shortest(input).c_str(), shortest(output).c_str(),
+                      shortest(rho.real()).c_str(), shortest(rho.imag()).c_str(), shortest(radius).c_str(),
+                      shortest(fatmc::ratio_disc_probability(radius, {input, output, rho})).c_str());
+        }
+      }
     }
   }
   return 0;
