@@ -7,6 +7,7 @@
 #include <map>
 
 #include "coordinator/store/campaign_store.h"
+#include "coordinator/store/database_error.h"
 #include "coordinator/store/schema.h"
 #include "coordinator/store/stored_campaign.h"
 
@@ -55,13 +56,23 @@ CampaignReader::CampaignReader(CampaignReader&&) noexcept = default;
 CampaignReader::~CampaignReader() = default;
 
 Result<CampaignReader> CampaignReader::open(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) {
+  std::error_code error;
+  const auto kind = std::filesystem::status(path, error).type();
+  if (kind == std::filesystem::file_type::none) {
+    return fail(Error{path, 0, "", "cannot be read (" + error.message() + "), name a database that you may read"});
+  }
+  if (kind != std::filesystem::file_type::regular) {
     return fail(Error{path, 0, "", "no such database, name one that `fatmc run` made"});
   }
-  auto db = std::make_unique<SQLite::Database>(path, SQLite::OPEN_READONLY, 5000);
-  Result<StoredCampaign> campaign = read_campaign(*db, path);
-  if (!campaign) return fail(campaign.error());
-  return CampaignReader(std::make_unique<Parts>(Parts{std::move(db), std::move(*campaign)}));
+  try {
+    auto db = std::make_unique<SQLite::Database>(path, SQLite::OPEN_READONLY, 5000);
+    Result<StoredCampaign> campaign = read_campaign(*db, path);
+    if (!campaign) return fail(campaign.error());
+    return CampaignReader(std::make_unique<Parts>(Parts{std::move(db), std::move(*campaign)}));
+  } catch (const SQLite::Exception& e) {
+    if (!is_fault_of_file(e)) throw;
+    return fail(database_error(e, path));
+  }
 }
 
 const CampaignSpec& CampaignReader::spec() const { return parts_->campaign.spec; }

@@ -15,6 +15,7 @@
 #include "campaigns/base/campaign_spec.h"
 #include "campaigns/base/study.h"
 #include "coordinator/state/campaign_state.h"
+#include "coordinator/store/writer_lock.h"
 #include "core/base/error.h"
 
 namespace SQLite {
@@ -26,8 +27,13 @@ namespace fatmc {
 /// Writes a campaign's rows. I/O errors throw SQLite::Exception.
 class CampaignStore {
  public:
-  /// Creates the file (and its folder), or opens one of the same spec, seed and build: it is resumed, and
-  /// extended where the spec has more repetitions. An Error says what differs and what to do.
+  /// Makes the folder where there is none and becomes the only writer; the database is not touched.
+  static Result<WriterLock> lock(const std::string& path);
+  /// Creates the file, or opens one of the same spec, seed and build: it is resumed, extended where the spec
+  /// has more repetitions, and given the spec's published figures. An Error says what differs and what to do.
+  static Result<CampaignStore> open(WriterLock held, const std::string& path, const CampaignSpec& spec,
+                                    const std::string& build);
+  /// Locks and opens.
   static Result<CampaignStore> open(const std::string& path, const CampaignSpec& spec,
                                     const std::string& build);
 
