@@ -7,6 +7,7 @@
 
 #include "campaigns/registry_summaries.h"
 #include "coordinator/cli/command.h"
+#include "coordinator/cli/database_use.h"
 #include "coordinator/report/tables.h"
 #include "coordinator/store/campaign_store.h"
 
@@ -39,6 +40,15 @@ Result<std::vector<TableRow>> rows_of(const std::string& path) {
   return study->tables(reader->spec(), reader->rows());
 }
 
+// "5-5" means "5-5", or else the table whose name ends so: "Fig. 5-4" for "5-4", "Section 5.2.3" for "5.2.3".
+std::string full_name(const std::vector<std::string>& known, const std::string& wanted) {
+  if (std::find(known.begin(), known.end(), wanted) != known.end()) return wanted;
+  for (const std::string& name : known) {
+    if (name.ends_with(" " + wanted)) return name;
+  }
+  return "";
+}
+
 Exit run(const Options& options) {
   std::vector<std::string> databases = options.databases;
   if (databases.empty()) {
@@ -48,22 +58,27 @@ Exit run(const Options& options) {
   }
   std::vector<TableRow> rows;
   for (const std::string& path : databases) {
-    auto more = rows_of(path);
-    if (!more) return report(more.error());
-    rows.insert(rows.end(), more->begin(), more->end());
+    const Exit exit = use_database(path, [&] {
+      const auto more = rows_of(path);
+      if (!more) return report(more.error());
+      rows.insert(rows.end(), more->begin(), more->end());
+      return Exit::done;
+    });
+    if (exit != Exit::done) return exit;
   }
   if (!options.only.empty()) {
     std::vector<std::string> known;
     for (const TableRow& row : rows) {
       if (std::find(known.begin(), known.end(), row.table) == known.end()) known.push_back(row.table);
     }
-    if (std::find(known.begin(), known.end(), options.only) == known.end()) {
+    const std::string only = full_name(known, options.only);
+    if (only.empty()) {
       std::string list;
       for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
       return report(Error{"", 0, "--only",
                           "no table \"" + options.only + "\" in these databases, write one of: " + list});
     }
-    std::erase_if(rows, [&](const TableRow& row) { return row.table != options.only; });
+    std::erase_if(rows, [&](const TableRow& row) { return row.table != only; });
   }
   const std::map<std::string, TableFormat> formats = {
       {"text", TableFormat::text}, {"markdown", TableFormat::markdown}, {"json", TableFormat::json}};

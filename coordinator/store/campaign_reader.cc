@@ -93,6 +93,34 @@ std::vector<OutcomeCount> CampaignReader::outcomes() const {
   return out;
 }
 
+std::vector<CellProgress> CampaignReader::cells() const {
+  std::vector<CellProgress> out;
+  SQLite::Statement rows(*parts_->db, "SELECT cell, repetitions, stored, mean_trial_s FROM cells");
+  while (rows.executeStep()) {
+    CellProgress cell;
+    cell.cell = rows.getColumn(0).getString();
+    cell.repetitions = static_cast<std::uint64_t>(rows.getColumn(1).getInt64());
+    cell.stored = static_cast<std::uint64_t>(rows.getColumn(2).getInt64());
+    if (!rows.getColumn(3).isNull()) cell.mean_trial_s = rows.getColumn(3).getDouble();
+    out.push_back(std::move(cell));
+  }
+  return out;
+}
+
+std::optional<Throughput> CampaignReader::throughput() const {
+  SQLite::Statement last(
+      *parts_->db,
+      "WITH ended AS (SELECT started_us / 1e6 + duration_ns / 1e9 AS t FROM trial), "
+      "top AS (SELECT max(t) AS t FROM ended) "
+      "SELECT count(*), max(ended.t) - min(ended.t), strftime('%Y-%m-%dT%H:%M:%SZ', top.t, 'unixepoch') "
+      "FROM ended, top WHERE ended.t > top.t - 60");
+  if (!last.executeStep() || last.getColumn(0).getInt64() < 2) return std::nullopt;
+  const double span = last.getColumn(1).getDouble();
+  if (!(span > 0.0)) return std::nullopt;
+  const auto trials = static_cast<std::uint64_t>(last.getColumn(0).getInt64());
+  return Throughput{trials, static_cast<double>(trials - 1) / span, last.getColumn(2).getString()};
+}
+
 void CampaignReader::visit(std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor) const {
   SQLite::Database& db = *parts_->db;
   SQLite::Savepoint snapshot(db, "visit");  // several statements, one state of the database; visits may nest

@@ -10,10 +10,13 @@ int primary_code(const SQLite::Exception& exception) { return exception.getError
 
 }  // namespace
 
+bool is_damage(const SQLite::Exception& exception) {
+  return primary_code(exception) == SQLITE_NOTADB || primary_code(exception) == SQLITE_CORRUPT;
+}
+
 bool is_fault_of_file(const SQLite::Exception& exception) {
+  if (is_damage(exception)) return true;
   switch (primary_code(exception)) {
-    case SQLITE_NOTADB:
-    case SQLITE_CORRUPT:
     case SQLITE_CANTOPEN:
     case SQLITE_READONLY:
     case SQLITE_PERM:

@@ -13,6 +13,9 @@ namespace fatmc {
 /// named; else something failed meanwhile (disk full, ...).
 bool is_fault_of_file(const SQLite::Exception& exception);
 
+/// The file is no database, or a damaged one.
+bool is_damage(const SQLite::Exception& exception);
+
 Error database_error(const SQLite::Exception& exception, const std::string& path);
 
 }  // namespace fatmc
