@@ -1,4 +1,5 @@
-// Rows on their way to the coordinator: gathered into batches, kept until acknowledged, sent again when overdue.
+// Rows on their way to the coordinator: gathered into batches, kept until acknowledged, sent again when
+// overdue.
 #pragma once
 
 #include <chrono>

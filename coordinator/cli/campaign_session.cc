@@ -39,8 +39,9 @@ void write_last(const std::string& database) {
   if (!error && !out) error = std::error_code(errno, std::generic_category());
   if (!error) std::filesystem::rename(fresh, "results/last", error);
   if (error) {
-    std::fprintf(stderr, "fatmc: warning: results/last: cannot be written (%s), name the database to `fatmc tables`\n",
-                 error.message().c_str());
+    std::fprintf(
+        stderr, "fatmc: warning: results/last: cannot be written (%s), name the database to `fatmc tables`\n",
+        error.message().c_str());
   }
 }
 
@@ -75,8 +76,10 @@ Exit print_summary(const std::string& database) {
   std::vector<TableRow> shown;
   std::set<std::string> curves;
   for (const TableRow& row : *tables) {
-    if (row.table.starts_with("Fig.")) curves.insert(row.table);
-    else shown.push_back(row);
+    if (row.table.starts_with("Fig."))
+      curves.insert(row.table);
+    else
+      shown.push_back(row);
   }
   std::printf("\n");
   if (tables->empty()) {
@@ -145,8 +148,7 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
   CampaignServer server(std::move(socket), {}, state, store);
   if (options.workers == 0) {
     std::fprintf(stderr, "fatmc: %llu trials to do; start workers by: fatmc-worker --connect %s\n",
-                 static_cast<unsigned long long>(state.planned() - state.stored()),
-                 endpoint.c_str());
+                 static_cast<unsigned long long>(state.planned() - state.stored()), endpoint.c_str());
   }
   LocalWorkerOptions worker_options;
   worker_options.program = worker_program;

@@ -1,7 +1,7 @@
 // A command of `fatmc`: adds its options to the application and, when chosen, does its work.
 //
-// Work happens in the CLI11 callback; it reports through Exit, never by calling exit(). Each command has a file of
-// its own, command_<name>.cc, and a line in main.cc.
+// Work happens in the CLI11 callback; it reports through Exit, never by calling exit(). Each command has a
+// file of its own, command_<name>.cc, and a line in main.cc.
 #pragma once
 
 #include <CLI/CLI.hpp>

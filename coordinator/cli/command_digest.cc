@@ -26,9 +26,7 @@ void add_digest_command(CLI::App& app, Exit& exit) {
       "Times, hosts and attempts are left out: whoever computed them, the same results give the same line.\n"
       "Example: fatmc digest results/coverage.db");
   command->add_option("DB", *path, "database")->required();
-  command->callback([path, &exit] {
-    exit = use_database(*path, [&] { return print_digest(*path); });
-  });
+  command->callback([path, &exit] { exit = use_database(*path, [&] { return print_digest(*path); }); });
 }
 
 }  // namespace fatmc::cli

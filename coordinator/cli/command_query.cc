@@ -162,7 +162,8 @@ void add_query_command(CLI::App& app, Exit& exit) {
   command->add_option("--format", options->format, "layout")
       ->check(CLI::IsMember({"table", "csv", "json"}))
       ->capture_default_str();
-  command->callback([options, &exit] { exit = use_database(options->path, [&] { return query(*options); }); });
+  command->callback(
+      [options, &exit] { exit = use_database(options->path, [&] { return query(*options); }); });
 }
 
 }  // namespace fatmc::cli

@@ -69,11 +69,12 @@ Status resolve_entry(const std::string& key, Tree& entry, int depth) {
   std::error_code error;
   const auto kind = std::filesystem::status(path, error).type();
   if (kind == std::filesystem::file_type::directory || !std::ifstream(path)) {
-    const char* what = kind == std::filesystem::file_type::not_found    ? "no file \""
+    const char* what = kind == std::filesystem::file_type::not_found   ? "no file \""
                        : kind == std::filesystem::file_type::directory ? "names the folder \""
                                                                        : "cannot read \"";
-    return fail(Error{entry.file, entry.line, key,
-                      what + path.lexically_normal().string() + "\", write the path of a file relative to this file"});
+    return fail(Error{
+        entry.file, entry.line, key,
+        what + path.lexically_normal().string() + "\", write the path of a file relative to this file"});
   }
   Result<Tree> file = read_toml(path.lexically_normal().string());
   if (!file) return fail(file.error());

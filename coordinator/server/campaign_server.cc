@@ -67,8 +67,8 @@ Result<BoundSocket> BoundSocket::bind(const std::string& endpoint) {
   try {
     socket.bind(endpoint);
   } catch (const zmq::error_t& e) {
-    return fail(Error{"", 0, "--bind",
-                      "\"" + endpoint + "\" cannot be used (" + e.what() + "), write another port"});
+    return fail(
+        Error{"", 0, "--bind", "\"" + endpoint + "\" cannot be used (" + e.what() + "), write another port"});
   }
   parts->endpoint = socket.get(zmq::sockopt::last_endpoint);
   return BoundSocket(std::move(parts));

@@ -56,7 +56,8 @@ class BoundSocket {
 class CampaignServer : private Outbox {
  public:
   /// SIGINT, SIGTERM and SIGCHLD must be blocked (BlockedSignals) before.
-  CampaignServer(BoundSocket socket, const ServerOptions& options, CampaignState& state, CampaignStore& store);
+  CampaignServer(BoundSocket socket, const ServerOptions& options, CampaignState& state,
+                 CampaignStore& store);
   ~CampaignServer() override;
 
   /// Serves until all is stored, a signal comes, or a hook reports a failure; then says BYE to all workers.

@@ -59,7 +59,8 @@ Result<CampaignReader> CampaignReader::open(const std::string& path) {
   std::error_code error;
   const auto kind = std::filesystem::status(path, error).type();
   if (kind == std::filesystem::file_type::none) {
-    return fail(Error{path, 0, "", "cannot be read (" + error.message() + "), name a database that you may read"});
+    return fail(
+        Error{path, 0, "", "cannot be read (" + error.message() + "), name a database that you may read"});
   }
   if (kind != std::filesystem::file_type::regular) {
     return fail(Error{path, 0, "", "no such database, name one that `fatmc run` made"});

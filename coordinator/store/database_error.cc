@@ -32,12 +32,14 @@ Error database_error(const SQLite::Exception& exception, const std::string& path
     case SQLITE_NOTADB:
       return {path, 0, "", "is no database, name one that fatmc made"};
     case SQLITE_CORRUPT:
-      return {path, 0, "", "is damaged" + reason + ", restore a copy of it or run the campaign into another file"};
+      return {path, 0, "",
+              "is damaged" + reason + ", restore a copy of it or run the campaign into another file"};
     case SQLITE_CANTOPEN:
     case SQLITE_READONLY:
     case SQLITE_PERM:
       return {path, 0, "",
-              "cannot be opened" + reason + ", name a file that you may read and write, in a folder that you may write to"};
+              "cannot be opened" + reason +
+                  ", name a file that you may read and write, in a folder that you may write to"};
     default:
       return {path, 0, "", "failed" + reason + "; what was acknowledged is stored"};
   }

@@ -208,7 +208,8 @@ TEST_F(Store, ResumingTakesOverTheFiguresToCompareWithAndKeepsTheRest) {
     return *decode_campaign(tree);
   };
   const auto stored_text = [&] { return canonical_text(CampaignReader::open(path_)->spec().tree); };
-  for (const std::optional<double> figure : {std::optional(90.0), std::optional(95.5), std::optional<double>()}) {
+  for (const std::optional<double> figure :
+       {std::optional(90.0), std::optional(95.5), std::optional<double>()}) {
     const CampaignSpec spec = with_published(figure, 10);
     { ASSERT_TRUE(CampaignStore::open(path_, spec, "build")); }
     EXPECT_EQ(stored_text(), canonical_text(spec.tree));
