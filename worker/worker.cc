@@ -14,9 +14,11 @@
 #include <random>
 #include <zmq.hpp>
 
-#include "core/base/check.h"
 #include "proto/build_hash.h"
+#include "proto/host_name.h"
 #include "proto/wire.h"
+#include "worker/descriptor.h"
+#include "worker/result_outbox.h"
 #include "worker/trial_runner.h"
 
 namespace fatmc {
@@ -26,8 +28,6 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kHelloAgain{1000};
-constexpr milliseconds kResendAfter{3000};  // a commit takes milliseconds; a loss is rare
-constexpr milliseconds kBatchFor{5};        // rows of very short trials travel together
 constexpr milliseconds kLinger{500};
 
 std::string make_incarnation() {
@@ -40,30 +40,6 @@ std::string make_incarnation() {
   }
   return out;
 }
-
-std::string host_name() {
-  char name[256] = {};
-  return ::gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
-}
-
-std::size_t rough_size(const ComputedRow& row) {
-  std::size_t size = 128 + row.row.detail.size() + 32 * row.row.metrics.size();
-  for (const auto& [name, values] : row.row.arrays) size += name.size() + 16 + 8 * values.size();
-  return size;
-}
-
-// A descriptor that closes itself.
-class Descriptor {
- public:
-  explicit Descriptor(int value) : value_(value) { FATMC_CHECK(value >= 0, "out of file descriptors"); }
-  ~Descriptor() { ::close(value_); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  [[nodiscard]] int get() const { return value_; }
-
- private:
-  int value_;
-};
 
 int stop_signals(bool with_interrupt) {
   sigset_t set;
@@ -80,12 +56,6 @@ class Worker {
   [[nodiscard]] bool computing() { return !runner_.idle(); }
 
  private:
-  struct Batch {
-    std::string frame;
-    std::map<std::uint64_t, std::uint64_t> rows_of_lease;
-    Clock::time_point sent;
-  };
-
   void send(const Message& message) { send_frame(encode(message)); }
   void send_frame(const std::string& frame);
   void say_hello();
@@ -98,10 +68,8 @@ class Worker {
   void handle_bye(const Bye& bye);
   void look_at_runner();
   void send_results(bool all);
-  void send_batch(std::vector<FinishedRow>::iterator first, std::vector<FinishedRow>::iterator last);
   void send_credit();
   void do_what_is_due();
-  void resend(bool overdue_only);
   [[nodiscard]] milliseconds until_due() const;
   void end(int code, const std::string& why);
 
@@ -115,11 +83,10 @@ class Worker {
   std::shared_ptr<LoadedCampaign> campaign_;
   bool welcomed_ = false;
   milliseconds heartbeat_{500};
-  Clock::time_point now_ = Clock::now(), last_heard_ = now_, last_hello_{}, last_beat_{}, last_results_{};
-  std::uint64_t next_sequence_ = 1, newest_lease_ = 0;
+  Clock::time_point now_ = Clock::now(), last_heard_ = now_, last_hello_{}, last_beat_{};
+  std::uint64_t newest_lease_ = 0;
   std::map<std::uint64_t, std::uint64_t> leases_;  // -> rows not yet acknowledged
-  std::map<std::uint64_t, Batch> unacknowledged_;
-  std::vector<FinishedRow> rows_;
+  ResultOutbox outbox_{[this](const std::string& frame) { send_frame(frame); }};
   Credit credit_;
   std::optional<Credit> told_;
   std::optional<int> exit_;
@@ -179,10 +146,7 @@ void Worker::handle(const Message& message) {
 
 void Worker::handle_welcome(const Welcome& welcome) {
   if (welcomed_) return;  // the answer to a HELLO that was sent twice
-  if (campaign_ == nullptr || campaign_->id() != welcome.campaign) {
-    unacknowledged_.clear();
-    rows_.clear();
-  }
+  if (campaign_ == nullptr || campaign_->id() != welcome.campaign) outbox_.clear();
   // Trials leased by a coordinator that is gone are the new one's to lease. Loaded anew, since the new one
   // may plan more repetitions.
   leases_.clear();
@@ -200,7 +164,7 @@ void Worker::handle_welcome(const Welcome& welcome) {
   told_.reset();
   last_beat_ = now_;
   spdlog::info("welcome: campaign {}", welcome.campaign.substr(0, 12));
-  resend(false);
+  outbox_.resend(false, now_);
 }
 
 void Worker::handle_lease(const Lease& lease) {
@@ -211,13 +175,10 @@ void Worker::handle_lease(const Lease& lease) {
 }
 
 void Worker::handle_ack(const Ack& ack) {
-  const auto batch = unacknowledged_.find(ack.sequence);
-  if (batch == unacknowledged_.end()) return;
-  for (const auto& [id, rows] : batch->second.rows_of_lease) {
+  for (const auto& [id, rows] : outbox_.acknowledge(ack.sequence)) {
     const auto lease = leases_.find(id);
     if (lease != leases_.end() && (lease->second -= std::min(lease->second, rows)) == 0) leases_.erase(lease);
   }
-  unacknowledged_.erase(batch);
 }
 
 void Worker::handle_refused(const Refused& refused) {
@@ -249,42 +210,14 @@ void Worker::look_at_runner() {
     return end(news.failure->code == Refused::Code::unusable_spec ? 2 : 1, "a trial cannot be run");
   }
   for (FinishedRow& row : news.rows) {
-    if (campaign_ != nullptr && row.campaign == campaign_->id()) rows_.push_back(std::move(row));
+    if (campaign_ != nullptr && row.campaign == campaign_->id()) outbox_.add(std::move(row));
   }
   credit_ = {news.idle, news.queued, newest_lease_};
 }
 
 void Worker::send_results(bool all) {
-  if (rows_.empty() || !welcomed_) return;
-  const bool due =
-      all || rows_.size() >= kMaxRowsPerMessage || credit_.queued == 0 || now_ - last_results_ >= kBatchFor;
-  if (!due) return;
-  auto first = rows_.begin();
-  while (first != rows_.end()) {
-    std::size_t bytes = rough_size(first->row);
-    auto last = first + 1;
-    while (last != rows_.end() && static_cast<std::size_t>(last - first) < kMaxRowsPerMessage &&
-           (bytes += rough_size(last->row)) < kResultsTargetBytes) {
-      ++last;
-    }
-    send_batch(first, last);
-    first = last;
-  }
-  rows_.clear();
-  last_results_ = now_;
-}
-
-void Worker::send_batch(std::vector<FinishedRow>::iterator first, std::vector<FinishedRow>::iterator last) {
-  Results results{campaign_->id(), next_sequence_++, {}};
-  Batch batch;
-  for (auto row = first; row != last; ++row) {
-    ++batch.rows_of_lease[row->lease];
-    results.rows.push_back(std::move(row->row));
-  }
-  batch.frame = encode(results);
-  batch.sent = now_;
-  send_frame(batch.frame);
-  unacknowledged_.emplace(results.sequence, std::move(batch));
+  if (!outbox_.has_unsent() || !welcomed_) return;
+  if (all || credit_.queued == 0 || outbox_.is_due(now_)) outbox_.flush(campaign_->id(), now_);
 }
 
 void Worker::send_credit() {
@@ -292,14 +225,6 @@ void Worker::send_credit() {
   if (!welcomed_ || credit_.queued > 0 || credit_ == told_) return;
   told_ = credit_;
   send(credit_);
-}
-
-void Worker::resend(bool overdue_only) {
-  for (auto& [sequence, batch] : unacknowledged_) {
-    if (overdue_only && now_ - batch.sent < kResendAfter) continue;
-    batch.sent = now_;
-    send_frame(batch.frame);
-  }
 }
 
 void Worker::do_what_is_due() {
@@ -315,7 +240,7 @@ void Worker::do_what_is_due() {
   Heartbeat heartbeat{credit_, {}};
   for (const auto& [lease, rows] : leases_) heartbeat.leases.push_back(lease);
   send(heartbeat);
-  resend(true);
+  outbox_.resend(true, now_);
 }
 
 milliseconds Worker::until_due() const {
@@ -323,7 +248,7 @@ milliseconds Worker::until_due() const {
     return std::max(std::chrono::ceil<milliseconds>(time), milliseconds(0));
   };
   milliseconds wait = ceil_ms(welcomed_ ? last_beat_ + heartbeat_ - now_ : last_hello_ + kHelloAgain - now_);
-  if (!rows_.empty() && welcomed_) wait = std::min(wait, ceil_ms(last_results_ + kBatchFor - now_));
+  if (outbox_.has_unsent() && welcomed_) wait = std::min(wait, ceil_ms(outbox_.due() - now_));
   return wait;
 }
 

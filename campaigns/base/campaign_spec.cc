@@ -43,6 +43,21 @@ std::string CampaignSpec::identity() const {
   return hex(sha256(text));
 }
 
+// The name is that of a file, results/NAME.db, beside which FILE-journal and the like may stand.
+namespace {
+
+void check_name(Decoder& table, const std::string& name) {
+  constexpr std::size_t kLongest = 200;  // of the 255 bytes of a file name
+  if (name.empty()) table.reject("name", "is empty, write a plain file name");
+  if (name.find('/') != std::string::npos) table.reject("name", "holds a '/', write a plain file name");
+  if (name.size() > kLongest) {
+    table.reject("name", "has " + std::to_string(name.size()) + " characters, write at most " +
+                             std::to_string(kLongest));
+  }
+}
+
+}  // namespace
+
 Result<CampaignSpec> decode_campaign(const Tree& tree) {
   CampaignSpec spec;
   spec.tree = tree;
@@ -52,8 +67,7 @@ Result<CampaignSpec> decode_campaign(const Tree& tree) {
     spec.study = table.text("study");
     spec.name = table.text("name", spec.study);
     spec.seed = static_cast<std::uint64_t>(table.integer("seed", {.low = 0}));
-    if (spec.name.find('/') != std::string::npos)
-      table.reject("name", "holds a '/', write a plain file name");
+    check_name(table, spec.name);
     top.take(table.finish());
   }
   for (const Tree* entry : top.tables("cell")) {

@@ -37,7 +37,7 @@ std::string allowed(IntegerRange range) {
 
 Decoder::Decoder(const Tree& tree, std::string path) : tree_(&tree), path_(std::move(path)) {
   if (tree.table() == nullptr) {
-    error_ = Error{tree.file, tree.line, path_, "is a " + std::string(kind_name(tree)) + ", write a table"};
+    error_ = Error{tree.file, tree.line, path_, "is " + with_article(kind_name(tree)) + ", write a table"};
   }
 }
 
@@ -46,6 +46,11 @@ std::string Decoder::name(std::string_view key) const {
 }
 
 void Decoder::skip(std::string_view key) { known_.emplace_back(key); }
+
+bool Decoder::has(std::string_view key) {
+  skip(key);
+  return tree_->find(key) != nullptr;
+}
 
 const Tree* Decoder::get(std::string_view key, bool required) {
   known_.emplace_back(key);
@@ -64,7 +69,7 @@ void Decoder::reject(std::string_view key, std::string message) {
 }
 
 void Decoder::wrong_kind(std::string_view key, const Tree& entry, std::string_view wanted) {
-  reject(key, "is a " + std::string(kind_name(entry)) + ", write " + std::string(wanted));
+  reject(key, "is " + with_article(kind_name(entry)) + ", write " + std::string(wanted));
 }
 
 double Decoder::real(std::string_view key, RealRange range, std::optional<double> fallback) {
@@ -141,7 +146,7 @@ std::vector<double> Decoder::reals(std::string_view key, std::size_t count, Real
   for (const Tree& item : array->items) {
     const std::optional<double> number = as_real(item);
     if (!number) {
-      reject(key, "holds a " + std::string(kind_name(item)) + ", write a list of numbers");
+      reject(key, "holds " + with_article(kind_name(item)) + ", write a list of numbers");
       return values;
     }
     if (!std::isfinite(*number) || *number < range.low || *number > range.high) {
@@ -240,6 +245,7 @@ Status Decoder::finish() {
       if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
       std::vector<std::string> sorted = known_;
       std::sort(sorted.begin(), sorted.end());
+      sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());  // asked for more than once
       error_ =
           Error{entry.file, entry.line, name(key), "is not a known key, the keys here are: " + join(sorted)};
       break;

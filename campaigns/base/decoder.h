@@ -55,7 +55,8 @@ class Decoder {
   /// The tables of an array of tables ([[key]]); empty when absent and not required.
   std::vector<const Tree*> tables(std::string_view key, bool required = true);
 
-  [[nodiscard]] bool has(std::string_view key) const { return tree_->find(key) != nullptr; }
+  /// Whether the key is there; it is known from now on, be it there or not.
+  [[nodiscard]] bool has(std::string_view key);
   /// Marks a key as known without reading it (another decoder does).
   void skip(std::string_view key);
   /// Reports a value of this table as wrong.

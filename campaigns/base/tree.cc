@@ -33,6 +33,11 @@ std::string_view kind_name(const Tree& tree) {
   return kNames[tree.value.index()];
 }
 
+std::string with_article(std::string_view kind) {
+  const bool vowel = std::string_view("aeiou").find(kind.front()) != std::string_view::npos;
+  return (vowel ? "an " : "a ") + std::string(kind);
+}
+
 namespace {
 
 void append_string(const std::string& text, std::string& out) {

@@ -39,6 +39,8 @@ struct Tree {
 
 /// "table", "array", "string", "number", "integer" or "boolean", for messages.
 std::string_view kind_name(const Tree& tree);
+/// "a table", "an integer", ...
+std::string with_article(std::string_view kind);
 
 /// Canonical text of the values alone, without files and lines and with sorted keys: equal for equal
 /// meanings. Hashing it tells whether two specs are the same.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "campaigns/base/published_figures.h"
 #include "campaigns/registry_trials.h"
 #include "coordinator/input/toml_file.h"
 #include "core/base/text.h"
@@ -70,6 +71,8 @@ Result<CampaignSpec> read_campaign(const std::string& path, const SpecChanges& c
     const auto prepared = (*study)->prepare(*spec, cell);
     if (!prepared) return fail(prepared.error());
   }
+  // Read by the tables alone, hours later.
+  if (const auto published = decode_published(*spec); !published) return fail(published.error());
   return spec;
 }
 

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include <set>
 
 #include "campaigns/registry_summaries.h"
+#include "coordinator/cli/database_use.h"
 #include "coordinator/cli/progress_line.h"
 #include "coordinator/report/tables.h"
 #include "coordinator/server/campaign_server.h"
@@ -26,11 +28,21 @@ namespace {
 constexpr std::chrono::milliseconds kByePatience{1500};
 
 // results/last names the databases of the last run, a path a line, for `fatmc tables` without arguments.
+// A convenience, so that failing is no failure of the run.
 void write_last(const std::string& database) {
-  std::filesystem::create_directories("results");
   const std::string fresh = "results/last.new";
-  std::ofstream(fresh) << std::filesystem::absolute(database).lexically_normal().string() << "\n";
-  std::filesystem::rename(fresh, "results/last");
+  std::error_code error;
+  std::filesystem::create_directories("results", error);
+  std::ofstream out(fresh);
+  out << std::filesystem::absolute(database).lexically_normal().string() << "\n";
+  out.close();
+  if (!error && !out) error = std::error_code(errno, std::generic_category());
+  if (!error) std::filesystem::rename(fresh, "results/last", error);
+  if (error) {
+    std::fprintf(
+        stderr, "fatmc: warning: results/last: cannot be written (%s), name the database to `fatmc tables`\n",
+        error.message().c_str());
+  }
 }
 
 void print_outcomes(const CampaignReader& reader, const std::string& database) {
@@ -64,10 +76,17 @@ Exit print_summary(const std::string& database) {
   std::vector<TableRow> shown;
   std::set<std::string> curves;
   for (const TableRow& row : *tables) {
-    if (row.table.starts_with("Fig.")) curves.insert(row.table);
-    else shown.push_back(row);
+    if (row.table.starts_with("Fig."))
+      curves.insert(row.table);
+    else
+      shown.push_back(row);
   }
   std::printf("\n");
+  if (tables->empty()) {
+    std::printf("no trial gave an estimate, so there is no table; fatmc query %s --view failures tells why\n",
+                database.c_str());
+    return Exit::done;
+  }
   print_tables(shown, TableFormat::text);
   for (const std::string& name : curves) {
     std::printf("\n%s: fatmc tables %s --only \"%s\"\n", name.c_str(), database.c_str(), name.c_str());
@@ -90,25 +109,50 @@ void report_counters(const CampaignState& state, std::uint64_t malformed) {
       c.duplicates, c.conflicts, c.reclaimed, c.refused_hellos, c.foreign, c.out_of_plan, malformed);
 }
 
+// What a session needs of this machine, had before the database is touched. In this order: an ipc path is
+// taken from whoever has it, so that only the holder of the lock may bind.
+struct Place {
+  std::string worker_program;
+  WriterLock lock;
+  BoundSocket socket;
+};
+
+Result<Place> take_place(const SessionOptions& options) {
+  std::string program;
+  if (options.workers > 0) {
+    Result<std::string> found = worker_program_beside_this();
+    if (!found) return fail(found.error());
+    program = std::move(*found);
+  }
+  Result<WriterLock> lock = CampaignStore::lock(options.database);
+  if (!lock) return fail(lock.error());
+  Result<BoundSocket> socket = BoundSocket::bind(options.endpoint);
+  if (!socket) return fail(socket.error());
+  return Place{std::move(program), std::move(*lock), std::move(*socket)};
+}
+
 // The serving part; returns nothing when all is stored.
-std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& options, CampaignStore& store) {
+std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& options,
+                          const std::string& worker_program, BoundSocket socket, CampaignStore& store) {
   StateOptions state_options;
   state_options.first_lease =
       static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(
                                      std::chrono::system_clock::now().time_since_epoch())
                                      .count());
   CampaignState state(store.plan(spec), Welcome{spec.identity(), spec.tree, 0}, build_hash(), state_options);
-  if (state.finished()) return std::nullopt;
-  const auto server = CampaignServer::bind({.endpoint = options.endpoint}, state, store);
-  if (!server) return report(server.error());
+  if (state.finished()) {
+    write_last(options.database);
+    return std::nullopt;
+  }
+  const std::string endpoint = socket.endpoint();
+  CampaignServer server(std::move(socket), {}, state, store);
   if (options.workers == 0) {
     std::fprintf(stderr, "fatmc: %llu trials to do; start workers by: fatmc-worker --connect %s\n",
-                 static_cast<unsigned long long>(state.planned() - state.stored()),
-                 (*server)->endpoint().c_str());
+                 static_cast<unsigned long long>(state.planned() - state.stored()), endpoint.c_str());
   }
   LocalWorkerOptions worker_options;
-  worker_options.program = worker_program_beside_this();
-  worker_options.endpoint = (*server)->endpoint();
+  worker_options.program = worker_program;
+  worker_options.endpoint = endpoint;
   worker_options.count =
       static_cast<unsigned>(std::min<std::uint64_t>(options.workers, state.planned() - state.stored()));
   worker_options.verbose = options.verbose;
@@ -117,15 +161,22 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
   progress.show(state.stored());
   workers.start();
   ServerHooks hooks;
-  hooks.on_tick = [&] { progress.show(state.stored()); };
+  bool last_is_written = false;
+  hooks.on_tick = [&] {
+    progress.show(state.stored());
+    if (last_is_written || state.stored() == 0) return;
+    last_is_written = true;
+    write_last(options.database);
+  };
   hooks.on_child = [&] {
-    for (const std::uint32_t pid : workers.reap(state.stored())) (*server)->on_process_ended(pid);
+    for (const std::uint32_t pid : workers.reap(state.stored())) server.on_process_ended(pid);
   };
   hooks.failure = [&] { return workers.failure(); };
-  const ServerEnd end = (*server)->run(hooks);
+  const ServerEnd end = server.run(hooks);
   progress.finish(state.stored());
+  if (!last_is_written && state.stored() > 0) write_last(options.database);
   workers.stop(kByePatience);
-  report_counters(state, (*server)->malformed());
+  report_counters(state, server.malformed());
   if (end == ServerEnd::finished) return std::nullopt;
   const std::string resume = "; what is stored stays, go on by: " + options.resume_command;
   if (end == ServerEnd::interrupted) {
@@ -166,12 +217,20 @@ Exit run_session(const CampaignSpec& spec, const SessionOptions& options) {
   spdlog::set_level(options.verbose ? spdlog::level::debug : spdlog::level::off);
   {
     const BlockedSignals blocked;
-    Result<CampaignStore> store = CampaignStore::open(options.database, spec, build_hash());
-    if (!store) return report(store.error());
-    write_last(options.database);
-    if (const auto exit = serve(spec, options, *store)) return *exit;
+    Result<Place> place = take_place(options);
+    if (!place) return report(place.error());
+    std::optional<Exit> exit;
+    const Exit opened = use_database(options.database, [&] {
+      Result<CampaignStore> store =
+          CampaignStore::open(std::move(place->lock), options.database, spec, build_hash());
+      if (!store) return report(store.error());
+      exit = serve(spec, options, place->worker_program, std::move(place->socket), *store);
+      return Exit::done;
+    });
+    if (opened != Exit::done) return opened;
+    if (exit) return *exit;
   }
-  return print_summary(options.database);
+  return use_database(options.database, [&] { return print_summary(options.database); });
 }
 
 }  // namespace fatmc::cli

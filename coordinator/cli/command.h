@@ -1,7 +1,7 @@
 // A command of `fatmc`: adds its options to the application and, when chosen, does its work.
 //
-// Work happens in the CLI11 callback; it reports through Exit, never by calling exit(). Each command has a file of
-// its own, command_<name>.cc, and a line in main.cc.
+// Work happens in the CLI11 callback; it reports through Exit, never by calling exit(). Each command has a
+// file of its own, command_<name>.cc, and a line in main.cc.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,6 +14,10 @@ namespace fatmc::cli {
 /// Exit codes of the command contract.
 enum class Exit : int { done = 0, failed = 1, wrong_use = 2, partial = 3 };
 
+/// Parses the command line, does what it says and makes sure that what was printed arrived; the exit code.
+/// Whatever is wrong is one line on standard error.
+int run_application(CLI::App& app, const Exit& exit, int argc, char** argv);
+
 /// Prints the error as one line on standard error.
 Exit report(const Error& error);
 
@@ -25,7 +29,6 @@ void add_coordinator_command(CLI::App& app, Exit& exit);
 void add_status_command(CLI::App& app, Exit& exit);
 void add_query_command(CLI::App& app, Exit& exit);
 void add_digest_command(CLI::App& app, Exit& exit);
-void add_replay_command(CLI::App& app, Exit& exit);
 void add_tables_command(CLI::App& app, Exit& exit);
 void add_ssv_command(CLI::App& app, Exit& exit);
 void add_stability_command(CLI::App& app, Exit& exit);

@@ -3,9 +3,20 @@
 #include <memory>
 
 #include "coordinator/cli/command.h"
+#include "coordinator/cli/database_use.h"
 #include "coordinator/store/campaign_store.h"
 
 namespace fatmc::cli {
+namespace {
+
+Exit print_digest(const std::string& path) {
+  const Result<CampaignReader> reader = CampaignReader::open(path);
+  if (!reader) return report(reader.error());
+  std::printf("%s\n", reader->digest().c_str());
+  return Exit::done;
+}
+
+}  // namespace
 
 void add_digest_command(CLI::App& app, Exit& exit) {
   auto path = std::make_shared<std::string>();
@@ -15,14 +26,7 @@ void add_digest_command(CLI::App& app, Exit& exit) {
       "Times, hosts and attempts are left out: whoever computed them, the same results give the same line.\n"
       "Example: fatmc digest results/coverage.db");
   command->add_option("DB", *path, "database")->required();
-  command->callback([path, &exit] {
-    const Result<CampaignReader> reader = CampaignReader::open(*path);
-    if (!reader) {
-      exit = report(reader.error());
-      return;
-    }
-    std::printf("%s\n", reader->digest().c_str());
-  });
+  command->callback([path, &exit] { exit = use_database(*path, [&] { return print_digest(*path); }); });
 }
 
 }  // namespace fatmc::cli

@@ -9,7 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "coordinator/cli/command.h"
+#include "coordinator/cli/database_use.h"
 #include "coordinator/store/campaign_store.h"
+#include "coordinator/store/database_error.h"
 #include "core/base/text.h"
 
 namespace fatmc::cli {
@@ -136,7 +138,7 @@ Exit query(const QueryOptions& options) {
       print_table(statement);
     }
   } catch (const SQLite::Exception& e) {
-    if (options.sql.empty()) throw;
+    if (options.sql.empty() || is_damage(e)) throw;
     return report({"", 0, "--sql", e.what()});
   }
   return Exit::done;
@@ -160,7 +162,8 @@ void add_query_command(CLI::App& app, Exit& exit) {
   command->add_option("--format", options->format, "layout")
       ->check(CLI::IsMember({"table", "csv", "json"}))
       ->capture_default_str();
-  command->callback([options, &exit] { exit = query(*options); });
+  command->callback(
+      [options, &exit] { exit = use_database(options->path, [&] { return query(*options); }); });
 }
 
 }  // namespace fatmc::cli

@@ -8,6 +8,7 @@
 #include "campaigns/formulas/formula_tables.h"
 #include "campaigns/registry_summaries.h"
 #include "coordinator/cli/command.h"
+#include "coordinator/cli/database_use.h"
 #include "coordinator/report/tables.h"
 #include "coordinator/store/campaign_store.h"
 
@@ -46,11 +47,19 @@ std::vector<std::string> names_of(const std::vector<TableRow>& rows) {
   return names;
 }
 
+// "5-5" means "5-5", or else the table whose name ends so: "Fig. 5-4" for "5-4", "Section 5.2.3" for "5.2.3".
+std::string full_name(const std::vector<std::string>& known, const std::string& wanted) {
+  if (std::find(known.begin(), known.end(), wanted) != known.end()) return wanted;
+  for (const std::string& name : known) {
+    if (name.ends_with(" " + wanted)) return name;
+  }
+  return "";
+}
+
 Exit run(const Options& options) {
   std::vector<std::string> databases = options.databases;
   std::vector<TableRow> rows = formula_tables();
-  const std::vector<std::string> formulas = names_of(rows);
-  if (std::find(formulas.begin(), formulas.end(), options.only) != formulas.end()) {
+  if (!options.only.empty() && !full_name(names_of(rows), options.only).empty()) {
     databases.clear();  // a formula table needs no database, not even one that cannot be read
   } else if (databases.empty()) {
     databases = last_databases();
@@ -58,13 +67,18 @@ Exit run(const Options& options) {
     rows.clear();
   }
   for (const std::string& path : databases) {
-    auto more = rows_of(path);
-    if (!more) return report(more.error());
-    rows.insert(rows.end(), more->begin(), more->end());
+    const Exit exit = use_database(path, [&] {
+      const auto more = rows_of(path);
+      if (!more) return report(more.error());
+      rows.insert(rows.end(), more->begin(), more->end());
+      return Exit::done;
+    });
+    if (exit != Exit::done) return exit;
   }
   if (!options.only.empty()) {
     const std::vector<std::string> known = names_of(rows);
-    if (std::find(known.begin(), known.end(), options.only) == known.end()) {
+    const std::string only = full_name(known, options.only);
+    if (only.empty()) {
       std::string list;
       for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
       return report(Error{"", 0, "--only",
@@ -72,7 +86,7 @@ Exit run(const Options& options) {
                               (list.empty() ? "" : ", write one of: " + list) +
                               "; further ones come with the campaign that fills them"});
     }
-    std::erase_if(rows, [&](const TableRow& row) { return row.table != options.only; });
+    std::erase_if(rows, [&](const TableRow& row) { return row.table != only; });
   }
   const std::map<std::string, TableFormat> formats = {
       {"text", TableFormat::text}, {"markdown", TableFormat::markdown}, {"json", TableFormat::json}};

@@ -1,7 +1,4 @@
 // fatmc: command line.
-#include <cstdio>
-#include <exception>
-
 #include "coordinator/cli/command.h"
 
 namespace fatmc::cli {
@@ -23,17 +20,7 @@ int run(int argc, char** argv) {
   add_estimate_command(app, exit);
   add_ssv_command(app, exit);
   add_stability_command(app, exit);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);  // --help
-    std::fprintf(stderr, "fatmc: %s (fatmc --help lists commands and options)\n", e.what());
-    return static_cast<int>(Exit::wrong_use);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "fatmc: %s\n", e.what());
-    return static_cast<int>(Exit::failed);
-  }
-  return static_cast<int>(exit);
+  return run_application(app, exit, argc, argv);
 }
 
 }  // namespace

@@ -58,14 +58,23 @@ bool names_file(std::string_view key) { return key == "model" || key == "experim
 Status resolve(Tree& tree, int depth);
 
 Status resolve_entry(const std::string& key, Tree& entry, int depth) {
+  if (!names_file(key) || entry.table() != nullptr) return resolve(entry, depth);
   const auto* name = std::get_if<std::string>(&entry.value);
-  if (!names_file(key) || name == nullptr) return resolve(entry, depth);
+  if (name == nullptr) {
+    return fail(Error{entry.file, entry.line, key,
+                      "is " + with_article(kind_name(entry)) + ", write a file name in quotes"});
+  }
   const auto path = std::filesystem::path(entry.file).parent_path() / *name;
   if (depth > 8) return fail(Error{entry.file, entry.line, key, "files name each other in a circle"});
-  if (!std::filesystem::exists(path)) {
-    return fail(
-        Error{entry.file, entry.line, key,
-              "no file \"" + path.lexically_normal().string() + "\", write a path relative to this file"});
+  std::error_code error;
+  const auto kind = std::filesystem::status(path, error).type();
+  if (kind == std::filesystem::file_type::directory || !std::ifstream(path)) {
+    const char* what = kind == std::filesystem::file_type::not_found   ? "no file \""
+                       : kind == std::filesystem::file_type::directory ? "names the folder \""
+                                                                       : "cannot read \"";
+    return fail(Error{
+        entry.file, entry.line, key,
+        what + path.lexically_normal().string() + "\", write the path of a file relative to this file"});
   }
   Result<Tree> file = read_toml(path.lexically_normal().string());
   if (!file) return fail(file.error());
@@ -90,7 +99,8 @@ Status resolve(Tree& tree, int depth) {
 
 Result<Tree> read_toml(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path)) {
+  std::error_code error;
+  if (!in || std::filesystem::is_directory(path, error)) {
     return fail(Error{path, 0, "", "cannot be read, name a TOML file that exists"});
   }
   std::ostringstream text;

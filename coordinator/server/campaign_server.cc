@@ -9,6 +9,7 @@
 
 #include "core/base/check.h"
 #include "proto/endpoint.h"
+#include "proto/host_name.h"
 
 namespace fatmc {
 namespace {
@@ -43,49 +44,54 @@ BlockedSignals::BlockedSignals() {
 
 BlockedSignals::~BlockedSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
-std::string host_name() {
-  char name[256] = {};
-  return ::gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
-}
-
-struct CampaignServer::Parts {
+struct BoundSocket::Parts {
   zmq::context_t context{1};
   zmq::socket_t socket{context, zmq::socket_type::router};
   std::string endpoint;
+};
+
+BoundSocket::BoundSocket(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+BoundSocket::BoundSocket(BoundSocket&&) noexcept = default;
+BoundSocket::~BoundSocket() = default;
+
+const std::string& BoundSocket::endpoint() const { return parts_->endpoint; }
+
+Result<BoundSocket> BoundSocket::bind(const std::string& endpoint) {
+  if (Status status = check_plain_endpoint(endpoint, "--bind"); !status) return fail(status.error());
+  auto parts = std::make_unique<Parts>();
+  zmq::socket_t& socket = parts->socket;
+  socket.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(kMaxFrameBytes));
+  socket.set(zmq::sockopt::linger, kLingerMs);
+  socket.set(zmq::sockopt::router_handover, true);  // a worker that reconnects keeps its routing id
+  socket.set(zmq::sockopt::ipv6, endpoint.find('[') != std::string::npos);
+  try {
+    socket.bind(endpoint);
+  } catch (const zmq::error_t& e) {
+    return fail(
+        Error{"", 0, "--bind", "\"" + endpoint + "\" cannot be used (" + e.what() + "), write another port"});
+  }
+  parts->endpoint = socket.get(zmq::sockopt::last_endpoint);
+  return BoundSocket(std::move(parts));
+}
+
+struct CampaignServer::Parts {
+  BoundSocket bound;
+  zmq::socket_t& socket;
   int signals = open_signals();
   std::vector<StoreRequest> batch;
   std::size_t batch_rows = 0;
   MonotonicTime batch_since{};
+  explicit Parts(BoundSocket given) : bound(std::move(given)), socket(bound.parts_->socket) {}
   ~Parts() { ::close(signals); }
 };
 
-CampaignServer::CampaignServer(const ServerOptions& options, CampaignState& state, CampaignStore& store)
-    : options_(options), state_(state), store_(store), parts_(std::make_unique<Parts>()) {
+CampaignServer::CampaignServer(BoundSocket socket, const ServerOptions& options, CampaignState& state,
+                               CampaignStore& store)
+    : options_(options), state_(state), store_(store), parts_(std::make_unique<Parts>(std::move(socket))) {
   FATMC_CHECK(parts_->signals >= 0, "out of file descriptors");
-  zmq::socket_t& socket = parts_->socket;
-  socket.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(kMaxFrameBytes));
-  socket.set(zmq::sockopt::linger, kLingerMs);
-  socket.set(zmq::sockopt::router_handover, true);  // a worker that reconnects keeps its routing id
-  socket.set(zmq::sockopt::ipv6, options.endpoint.find('[') != std::string::npos);
 }
 
 CampaignServer::~CampaignServer() = default;
-
-Result<std::unique_ptr<CampaignServer>> CampaignServer::bind(const ServerOptions& options,
-                                                             CampaignState& state, CampaignStore& store) {
-  if (Status status = check_plain_endpoint(options.endpoint, "--bind"); !status) return fail(status.error());
-  std::unique_ptr<CampaignServer> server(new CampaignServer(options, state, store));
-  try {
-    server->parts_->socket.bind(options.endpoint);
-  } catch (const zmq::error_t& e) {
-    return fail(Error{"", 0, "--bind",
-                      "\"" + options.endpoint + "\" cannot be used (" + e.what() + "), write another port"});
-  }
-  server->parts_->endpoint = server->parts_->socket.get(zmq::sockopt::last_endpoint);
-  return server;
-}
-
-const std::string& CampaignServer::endpoint() const { return parts_->endpoint; }
 
 void CampaignServer::send(const WorkerId& worker, const Message& message) {
   spdlog::debug("to {}: {}", worker.substr(0, 8), message_name(message));

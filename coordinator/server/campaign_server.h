@@ -19,7 +19,6 @@
 namespace fatmc {
 
 struct ServerOptions {
-  std::string endpoint = "tcp://127.0.0.1:*";
   std::size_t batch_rows = kMaxRowsPerMessage;
   std::chrono::milliseconds batch_wait{50};
   std::chrono::milliseconds tick{100};
@@ -36,15 +35,31 @@ struct ServerHooks {
 
 enum class ServerEnd { finished, interrupted, failed };
 
-class CampaignServer : private Outbox {
+/// The ROUTER socket, bound: had before a database is touched, so that a port in use leaves no trace. What
+/// workers send meanwhile waits in it.
+class BoundSocket {
  public:
-  /// Binds; SIGINT, SIGTERM and SIGCHLD must be blocked (BlockedSignals) before.
-  static Result<std::unique_ptr<CampaignServer>> bind(const ServerOptions& options, CampaignState& state,
-                                                      CampaignStore& store);
-  ~CampaignServer() override;
+  static Result<BoundSocket> bind(const std::string& endpoint = "tcp://127.0.0.1:*");
+  BoundSocket(BoundSocket&&) noexcept;
+  ~BoundSocket();
 
   /// With the port that was found for "*".
   [[nodiscard]] const std::string& endpoint() const;
+
+ private:
+  friend class CampaignServer;
+  struct Parts;
+  explicit BoundSocket(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+class CampaignServer : private Outbox {
+ public:
+  /// SIGINT, SIGTERM and SIGCHLD must be blocked (BlockedSignals) before.
+  CampaignServer(BoundSocket socket, const ServerOptions& options, CampaignState& state,
+                 CampaignStore& store);
+  ~CampaignServer() override;
+
   /// Serves until all is stored, a signal comes, or a hook reports a failure; then says BYE to all workers.
   /// Throws when the database fails.
   ServerEnd run(const ServerHooks& hooks);
@@ -55,7 +70,6 @@ class CampaignServer : private Outbox {
 
  private:
   struct Parts;
-  CampaignServer(const ServerOptions& options, CampaignState& state, CampaignStore& store);
   void send(const WorkerId& worker, const Message& message) override;
   void store(StoreRequest request) override;
   void receive();
@@ -82,7 +96,5 @@ class BlockedSignals {
  private:
   sigset_t before_;
 };
-
-std::string host_name();
 
 }  // namespace fatmc

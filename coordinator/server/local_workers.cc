@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
@@ -43,8 +44,15 @@ std::string how_it_ended(int status) {
 
 }  // namespace
 
-std::string worker_program_beside_this() {
-  return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "fatmc-worker").string();
+Result<std::string> worker_program_beside_this() {
+  std::string program =
+      (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "fatmc-worker").string();
+  if (::access(program.c_str(), X_OK) != 0) {
+    return fail(Error{program, 0, "",
+                      std::string("cannot be run (") + std::strerror(errno) +
+                          "), put fatmc-worker beside fatmc or use `fatmc coordinator`"});
+  }
+  return program;
 }
 
 LocalWorkers::~LocalWorkers() { stop(std::chrono::milliseconds(0)); }

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/error.h"
+
 namespace fatmc {
 
 struct LocalWorkerOptions {
@@ -53,7 +55,7 @@ class LocalWorkers {
   std::string failure_;
 };
 
-/// fatmc-worker beside the program that runs.
-std::string worker_program_beside_this();
+/// fatmc-worker beside the program that runs; an Error when there is none that may be run.
+Result<std::string> worker_program_beside_this();
 
 }  // namespace fatmc

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "coordinator/store/campaign_store.h"
+#include "coordinator/store/database_error.h"
 #include "coordinator/store/schema.h"
 #include "coordinator/store/stored_campaign.h"
 
@@ -55,13 +56,24 @@ CampaignReader::CampaignReader(CampaignReader&&) noexcept = default;
 CampaignReader::~CampaignReader() = default;
 
 Result<CampaignReader> CampaignReader::open(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) {
+  std::error_code error;
+  const auto kind = std::filesystem::status(path, error).type();
+  if (kind == std::filesystem::file_type::none) {
+    return fail(
+        Error{path, 0, "", "cannot be read (" + error.message() + "), name a database that you may read"});
+  }
+  if (kind != std::filesystem::file_type::regular) {
     return fail(Error{path, 0, "", "no such database, name one that `fatmc run` made"});
   }
-  auto db = std::make_unique<SQLite::Database>(path, SQLite::OPEN_READONLY, 5000);
-  Result<StoredCampaign> campaign = read_campaign(*db, path);
-  if (!campaign) return fail(campaign.error());
-  return CampaignReader(std::make_unique<Parts>(Parts{std::move(db), std::move(*campaign)}));
+  try {
+    auto db = std::make_unique<SQLite::Database>(path, SQLite::OPEN_READONLY, 5000);
+    Result<StoredCampaign> campaign = read_campaign(*db, path);
+    if (!campaign) return fail(campaign.error());
+    return CampaignReader(std::make_unique<Parts>(Parts{std::move(db), std::move(*campaign)}));
+  } catch (const SQLite::Exception& e) {
+    if (!is_fault_of_file(e)) throw;
+    return fail(database_error(e, path));
+  }
 }
 
 const CampaignSpec& CampaignReader::spec() const { return parts_->campaign.spec; }
@@ -80,6 +92,34 @@ std::vector<OutcomeCount> CampaignReader::outcomes() const {
                    static_cast<std::uint64_t>(rows.getColumn(2).getInt64())});
   }
   return out;
+}
+
+std::vector<CellProgress> CampaignReader::cells() const {
+  std::vector<CellProgress> out;
+  SQLite::Statement rows(*parts_->db, "SELECT cell, repetitions, stored, mean_trial_s FROM cells");
+  while (rows.executeStep()) {
+    CellProgress cell;
+    cell.cell = rows.getColumn(0).getString();
+    cell.repetitions = static_cast<std::uint64_t>(rows.getColumn(1).getInt64());
+    cell.stored = static_cast<std::uint64_t>(rows.getColumn(2).getInt64());
+    if (!rows.getColumn(3).isNull()) cell.mean_trial_s = rows.getColumn(3).getDouble();
+    out.push_back(std::move(cell));
+  }
+  return out;
+}
+
+std::optional<Throughput> CampaignReader::throughput() const {
+  SQLite::Statement last(
+      *parts_->db,
+      "WITH ended AS (SELECT started_us / 1e6 + duration_ns / 1e9 AS t FROM trial), "
+      "top AS (SELECT max(t) AS t FROM ended) "
+      "SELECT count(*), max(ended.t) - min(ended.t), strftime('%Y-%m-%dT%H:%M:%SZ', top.t, 'unixepoch') "
+      "FROM ended, top WHERE ended.t > top.t - 60");
+  if (!last.executeStep() || last.getColumn(0).getInt64() < 2) return std::nullopt;
+  const double span = last.getColumn(1).getDouble();
+  if (!(span > 0.0)) return std::nullopt;
+  const auto trials = static_cast<std::uint64_t>(last.getColumn(0).getInt64());
+  return Throughput{trials, static_cast<double>(trials - 1) / span, last.getColumn(2).getString()};
 }
 
 void CampaignReader::visit(std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor) const {

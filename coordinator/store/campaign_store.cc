@@ -11,6 +11,7 @@
 #include <map>
 #include <optional>
 
+#include "coordinator/store/database_error.h"
 #include "coordinator/store/schema.h"
 #include "coordinator/store/spec_difference.h"
 #include "coordinator/store/stored_campaign.h"
@@ -22,6 +23,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "arrays are stored as little-endian doubles");
 
 constexpr int kBusyMs = 5000;
+constexpr std::uint32_t kHeartbeatMs = 500;  // of the stored frame, which nobody is sent
 
 std::string utc_now() {
   const std::time_t now = std::time(nullptr);
@@ -35,14 +37,9 @@ std::string utc_now() {
 // A file without a table: new, or left by a process that died while making it.
 bool is_blank(const std::string& path) {
   if (!std::filesystem::exists(path) || std::filesystem::file_size(path) == 0) return true;
-  try {
-    const SQLite::Database db(path, SQLite::OPEN_READWRITE, kBusyMs);
-    SQLite::Statement tables(db, "SELECT 1 FROM sqlite_master");
-    return !tables.executeStep();
-  } catch (const SQLite::Exception& e) {
-    if (e.getErrorCode() != SQLITE_NOTADB) throw;
-    return false;
-  }
+  const SQLite::Database db(path, SQLite::OPEN_READWRITE, kBusyMs);
+  SQLite::Statement tables(db, "SELECT 1 FROM sqlite_master");
+  return !tables.executeStep();
 }
 
 void create(SQLite::Database& db, const CampaignSpec& spec, const std::string& build) {
@@ -51,7 +48,7 @@ void create(SQLite::Database& db, const CampaignSpec& spec, const std::string& b
   db.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
   db.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
   SQLite::Statement campaign(db, "INSERT INTO campaign VALUES (1, ?, ?, ?, ?, ?, ?, ?, ?)");
-  const std::string frame = encode(Welcome{spec.identity(), spec.tree, 500});
+  const std::string frame = encode(Welcome{spec.identity(), spec.tree, kHeartbeatMs});
   campaign.bind(1, spec.name);
   campaign.bind(2, spec.study);
   campaign.bind(3, static_cast<std::int64_t>(spec.seed));
@@ -97,7 +94,24 @@ Status check_same(const std::string& path, const StoredCampaign& stored, const C
   return {};
 }
 
-void extend(SQLite::Database& db, const CampaignSpec& spec) {
+// The figures to compare with are no part of the identity and may be corrected at any time: the run that
+// resumes decides.
+void renew_published(SQLite::Database& db, const StoredCampaign& stored, const CampaignSpec& spec) {
+  Tree tree = stored.spec.tree;
+  std::erase_if(std::get<Tree::Table>(tree.value).entries,
+                [](const auto& entry) { return entry.first == "published"; });
+  if (const Tree* published = spec.tree.find("published")) tree.set("published", *published);
+  if (canonical_text(tree) == canonical_text(stored.spec.tree)) return;
+  const std::string frame = encode(Welcome{stored.identity, tree, kHeartbeatMs});
+  SQLite::Statement campaign(db, "UPDATE campaign SET spec_canonical = ?, spec = ?");
+  campaign.bind(1, canonical_text(tree));
+  campaign.bind(2, frame.data(), static_cast<int>(frame.size()));
+  campaign.exec();
+}
+
+void resume(SQLite::Database& db, const StoredCampaign& stored, const CampaignSpec& spec) {
+  SQLite::Transaction transaction(db);
+  renew_published(db, stored, spec);
   SQLite::Statement cell(db, "UPDATE cell SET repetitions = max(repetitions, ?) WHERE name = ?");
   for (const Cell& planned : spec.cells) {
     cell.bind(1, static_cast<std::int64_t>(planned.repetitions));
@@ -105,6 +119,20 @@ void extend(SQLite::Database& db, const CampaignSpec& spec) {
     cell.exec();
     cell.reset();
   }
+  transaction.commit();
+}
+
+Status make_folder(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::error_code error;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  if (error) {
+    return fail(
+        Error{path, 0, "", "its folder cannot be made (" + error.message() + "), name another by --db"});
+  }
+  if (std::filesystem::is_directory(path, error))
+    return fail(Error{path, 0, "", "is a folder, name a file by --db"});
+  return {};
 }
 
 }  // namespace
@@ -208,36 +236,44 @@ CampaignStore::CampaignStore(std::unique_ptr<Parts> parts) : parts_(std::move(pa
 CampaignStore::CampaignStore(CampaignStore&&) noexcept = default;
 CampaignStore::~CampaignStore() = default;
 
+Result<WriterLock> CampaignStore::lock(const std::string& path) {
+  if (Status status = make_folder(path); !status) return fail(status.error());
+  return WriterLock::take(path);
+}
+
 Result<CampaignStore> CampaignStore::open(const std::string& path, const CampaignSpec& spec,
                                           const std::string& build) {
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  std::error_code error;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  if (error)
-    return fail(
-        Error{path, 0, "", "its folder cannot be made (" + error.message() + "), name another by --db"});
-  if (std::filesystem::is_directory(path))
-    return fail(Error{path, 0, "", "is a folder, name a file by --db"});
-  const bool exists = !is_blank(path);
-  if (exists) {
-    // Read before anything is written, so that a file of another kind stays as it is.
-    SQLite::Database db(path, SQLite::OPEN_READWRITE, kBusyMs);
-    Result<StoredCampaign> stored = read_campaign(db, path);
-    if (!stored) return fail(stored.error());
-    if (Status status = check_same(path, *stored, spec, build); !status) return fail(status.error());
+  Result<WriterLock> held = lock(path);
+  if (!held) return fail(held.error());
+  return open(std::move(*held), path, spec, build);
+}
+
+Result<CampaignStore> CampaignStore::open(WriterLock held, const std::string& path, const CampaignSpec& spec,
+                                          const std::string& build) {
+  try {
+    std::optional<StoredCampaign> stored;
+    if (!is_blank(path)) {
+      // Read before anything is written, so that a file of another kind stays as it is.
+      SQLite::Database db(path, SQLite::OPEN_READWRITE, kBusyMs);
+      Result<StoredCampaign> found = read_campaign(db, path);
+      if (!found) return fail(found.error());
+      if (Status status = check_same(path, *found, spec, build); !status) return fail(status.error());
+      stored = std::move(*found);
+    }
+    auto parts = std::make_unique<Parts>(std::move(held), path);
+    parts->db.exec("PRAGMA journal_mode = WAL");
+    parts->db.exec("PRAGMA synchronous = FULL");
+    if (stored) {
+      resume(parts->db, *stored, spec);
+    } else {
+      create(parts->db, spec, build);
+    }
+    parts->prepare();
+    return CampaignStore(std::move(parts));
+  } catch (const SQLite::Exception& e) {
+    if (!is_fault_of_file(e)) throw;
+    return fail(database_error(e, path));
   }
-  Result<WriterLock> lock = WriterLock::take(path);
-  if (!lock) return fail(lock.error());
-  auto parts = std::make_unique<Parts>(std::move(*lock), path);
-  parts->db.exec("PRAGMA journal_mode = WAL");
-  parts->db.exec("PRAGMA synchronous = FULL");
-  if (exists) {
-    extend(parts->db, spec);
-  } else {
-    create(parts->db, spec, build);
-  }
-  parts->prepare();
-  return CampaignStore(std::move(parts));
 }
 
 std::vector<PlanCell> CampaignStore::plan(const CampaignSpec& spec) {

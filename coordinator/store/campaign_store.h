@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "campaigns/base/campaign_spec.h"
 #include "campaigns/base/study.h"
 #include "coordinator/state/campaign_state.h"
+#include "coordinator/store/writer_lock.h"
 #include "core/base/error.h"
 
 namespace SQLite {
@@ -26,8 +28,13 @@ namespace fatmc {
 /// Writes a campaign's rows. I/O errors throw SQLite::Exception.
 class CampaignStore {
  public:
-  /// Creates the file (and its folder), or opens one of the same spec, seed and build: it is resumed, and
-  /// extended where the spec has more repetitions. An Error says what differs and what to do.
+  /// Makes the folder where there is none and becomes the only writer; the database is not touched.
+  static Result<WriterLock> lock(const std::string& path);
+  /// Creates the file, or opens one of the same spec, seed and build: it is resumed, extended where the spec
+  /// has more repetitions, and given the spec's published figures. An Error says what differs and what to do.
+  static Result<CampaignStore> open(WriterLock held, const std::string& path, const CampaignSpec& spec,
+                                    const std::string& build);
+  /// Locks and opens.
   static Result<CampaignStore> open(const std::string& path, const CampaignSpec& spec,
                                     const std::string& build);
 
@@ -52,6 +59,19 @@ struct OutcomeCount {
   std::uint64_t trials = 0;
 };
 
+struct CellProgress {
+  std::string cell;
+  std::uint64_t repetitions = 0, stored = 0;
+  std::optional<double> mean_trial_s;  ///< none without a trial
+};
+
+/// Of the last minute of work.
+struct Throughput {
+  std::uint64_t trials = 0;
+  double trials_per_s = 0.0;
+  std::string until;  ///< UTC
+};
+
 /// Reads a campaign's rows, also while another process writes them.
 class CampaignReader {
  public:
@@ -65,6 +85,11 @@ class CampaignReader {
   [[nodiscard]] std::string build() const;
   [[nodiscard]] std::uint64_t stored() const;
   [[nodiscard]] std::vector<OutcomeCount> outcomes() const;
+  /// In the order of the spec.
+  [[nodiscard]] std::vector<CellProgress> cells() const;
+  /// Over the trials that ended in the last 60 s before the last one, so that pauses between runs do not
+  /// count; none when they are fewer than two.
+  [[nodiscard]] std::optional<Throughput> throughput() const;
   /// Rows of a cell in the order of repetitions.
   void visit(std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor) const;
   /// For SummaryStudy; the reader must outlive it.

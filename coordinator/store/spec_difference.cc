@@ -8,11 +8,17 @@ std::string text_of(const Tree& tree) {
   return text.size() <= 40 ? text : "another " + std::string(kind_name(tree));
 }
 
+// What CampaignSpec::identity() leaves out, too.
+bool is_ignored(const std::string& path, const std::string& name, int depth) {
+  return (depth == 0 && name == "published") ||
+         (depth == 2 && path.starts_with("cell.") && name == "repetitions");
+}
+
 std::optional<Error> differ(const Tree& now, const Tree& then, const std::string& path, int depth);
 
 std::optional<Error> differ_table(const Tree& now, const Tree& then, const std::string& path, int depth) {
   for (const auto& [name, entry] : now.table()->entries) {
-    if (depth == 2 && path.starts_with("cell.") && name == "repetitions") continue;
+    if (is_ignored(path, name, depth)) continue;
     const std::string key = path.empty() ? name : path + "." + name;
     const Tree* before = then.find(name);
     if (before == nullptr)
@@ -20,6 +26,7 @@ std::optional<Error> differ_table(const Tree& now, const Tree& then, const std::
     if (auto found = differ(entry, *before, key, depth + 1)) return found;
   }
   for (const auto& [name, entry] : then.table()->entries) {
+    if (is_ignored(path, name, depth)) continue;
     const std::string key = path.empty() ? name : path + "." + name;
     if (now.find(name) == nullptr) {
       return Error{now.file, now.line, key, "is missing, the database was made with " + text_of(entry)};

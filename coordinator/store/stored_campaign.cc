@@ -1,8 +1,8 @@
 #include "coordinator/store/stored_campaign.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
-#include <sqlite3.h>
 
+#include "coordinator/store/database_error.h"
 #include "coordinator/store/schema.h"
 #include "proto/wire.h"
 
@@ -46,8 +46,8 @@ Result<StoredCampaign> read_campaign(SQLite::Database& db, const std::string& pa
     if (!spec) return fail(spec.error());
     return StoredCampaign{std::move(*spec), row.getColumn(1).getString(), row.getColumn(2).getString()};
   } catch (const SQLite::Exception& e) {
-    if (e.getErrorCode() != SQLITE_NOTADB && e.getErrorCode() != SQLITE_CORRUPT) throw;
-    return fail(Error{path, 0, "", "is no database, name one that fatmc made"});
+    if (!is_fault_of_file(e)) throw;
+    return fail(database_error(e, path));
   }
 }
 

@@ -63,7 +63,10 @@ class Serving : public testing::Test {
     std::filesystem::remove_all(folder_);
     store_.emplace(std::move(*CampaignStore::open((folder_ / "c.db").string(), spec_, "build")));
     state_.emplace(store_->plan(spec_), Welcome{spec_.identity(), spec_.tree, 0}, "build");
-    server_ = std::move(*CampaignServer::bind({}, *state_, *store_));
+    Result<BoundSocket> socket = BoundSocket::bind();
+    ASSERT_TRUE(socket) << socket.error().text();
+    endpoint_ = socket->endpoint();
+    server_ = std::make_unique<CampaignServer>(std::move(*socket), ServerOptions{}, *state_, *store_);
     end_ = std::async(std::launch::async, [this] { return server_->run({}); });
   }
   void TearDown() override {
@@ -79,7 +82,7 @@ class Serving : public testing::Test {
   }
   // A worker that does all that is left.
   void finish() {
-    Peer worker(context_, server_->endpoint(), good_);
+    Peer worker(context_, endpoint_, good_);
     worker.send(hello(good_));
     EXPECT_EQ(worker.expect<Welcome>().campaign, spec_.identity());
     worker.send(Results{spec_.identity(), 1, {row(0), row(1)}});
@@ -95,12 +98,13 @@ class Serving : public testing::Test {
   zmq::context_t context_;
   std::optional<CampaignStore> store_;
   std::optional<CampaignState> state_;
+  std::string endpoint_;
   std::unique_ptr<CampaignServer> server_;
   std::future<ServerEnd> end_;
 };
 
 TEST_F(Serving, FramesThatCannotBeReadAreCountedAndDropped) {
-  Peer peer(context_, server_->endpoint(), bad_);
+  Peer peer(context_, endpoint_, bad_);
   peer.raw({"nonsense"});
   peer.raw({""});
   peer.raw({"two", "frames"});
@@ -115,13 +119,13 @@ TEST_F(Serving, FramesThatCannotBeReadAreCountedAndDropped) {
 }
 
 TEST_F(Serving, AFrameAboveTheLimitClosesItsConnectionAndNothingElse) {
-  Peer peer(context_, server_->endpoint(), bad_);
+  Peer peer(context_, endpoint_, bad_);
   peer.raw({std::string(kMaxFrameBytes + 1, 'x')});
   finish();
 }
 
 TEST_F(Serving, AnotherBuildAndAForeignRoutingIdAreRefused) {
-  Peer peer(context_, server_->endpoint(), bad_);
+  Peer peer(context_, endpoint_, bad_);
   Hello other = hello(bad_);
   other.build = "another";
   peer.send(other);
@@ -134,7 +138,7 @@ TEST_F(Serving, AnotherBuildAndAForeignRoutingIdAreRefused) {
 }
 
 TEST_F(Serving, AWorkerMayNotSpeakAsTheCoordinator) {
-  Peer peer(context_, server_->endpoint(), bad_);
+  Peer peer(context_, endpoint_, bad_);
   peer.send(hello(bad_));
   peer.expect<Welcome>();
   peer.send(Lease{1, 0, 0, 2});

@@ -76,8 +76,9 @@ Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& 
       sum += row.metrics.at(1).second;
       ++count;
     });
+    if (count == 0) continue;
     const auto n = static_cast<double>(count);
-    out.push_back({"test", spec.cells[cell].name, "mean of a standard normal", "1", 0.0, sum / n,
+    out.push_back({"Section 1.2", spec.cells[cell].name, "mean of a standard normal", "1", 0.0, sum / n,
                    -2.0 / std::sqrt(n), 2.0 / std::sqrt(n), count, "shape", ""});
   }
   return out;

@@ -4,7 +4,9 @@ Run by ctest; FATMC_TEST_BIN is the folder with fatmc and fatmc-worker that have
 """
 import json
 import os
+import shutil
 import signal
+import socket
 import sqlite3
 import subprocess
 import tempfile
@@ -226,6 +228,87 @@ class Engine(unittest.TestCase):
         with open(self.path("notes.db")) as file:
             self.assertTrue(file.read().startswith("this is no database"))
         self.refused("nowhere.db: no such database", "digest", "nowhere.db")
+
+    def test_wrong_outputs_get_one_line_and_exit_code_2_before_any_trial(self):
+        os.mkdir(self.path("folder"))
+        self.write("file", "notes\n")
+        for command in (("run", "spec.toml"), ("coordinator", "spec.toml", "--bind", "tcp://127.0.0.1:*")):
+            self.refused("folder: is a folder", *command, "--db", "folder")
+            self.refused("file/x.db: its folder cannot be made", *command, "--db", "file/x.db")
+            self.refused("n.db", *command, "--db", "n" * 300 + ".db")
+        for command in ("status", "digest", "query", "tables"):
+            self.refused("folder: no such database", command, "folder")
+            self.refused("n.db: cannot be read", command, "n" * 300 + ".db")
+        for name, what in (("", "is empty"), ("n" * 300, "has 300 characters")):
+            self.write("name.toml", SPEC.replace('name = "engine"', f'name = "{name}"'))
+            self.refused(f"name.toml:4: campaign.name: {what}", "run", "name.toml")
+        self.assertEqual(sorted(os.listdir(self.cwd)), ["file", "folder", "name.toml", "spec.toml"])
+
+    def test_wrong_published_figures_are_refused_before_any_trial(self):
+        self.write("published.toml", 'kind = "published"\n[[figure]]\ntable = 5\n')
+        self.write("with.toml", 'published = "published.toml"\n' + SPEC)
+        self.refused("published.toml:3: figure.table: is an integer, write a string", "run", "with.toml")
+        self.assertFalse(os.path.exists(self.path("results")))
+
+    def test_a_failed_start_leaves_no_trace(self):
+        with socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            endpoint = f"tcp://127.0.0.1:{taken.getsockname()[1]}"
+            self.refused("cannot be used", "coordinator", "spec.toml", "--bind", endpoint, "--db", "new.db")
+        self.assertEqual(os.listdir(self.cwd), ["spec.toml"])
+        alone = self.path("bin")
+        os.mkdir(alone)
+        shutil.copy(FATMC, alone)
+        result = subprocess.run([os.path.join(alone, "fatmc"), "run", "spec.toml"], cwd=self.cwd,
+                                capture_output=True, text=True, timeout=LIMIT_S)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("fatmc-worker: cannot be run", result.stderr)
+        self.assertEqual(sorted(os.listdir(self.cwd)), ["bin", "spec.toml"])
+
+    def test_a_run_whose_last_cannot_be_written_is_done_with_a_warning(self):
+        self.write("results", "a file where a folder should be\n")
+        result = self.call("run", "spec.toml", "--db", "x.db", "--trials", "2")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("warning: results/last: cannot be written", result.stderr)
+        self.assertIn("4 of 4 trials", result.stdout)
+
+    def test_a_damaged_database_is_named_with_a_remedy_by_every_command(self):
+        self.assertEqual(self.call("run", "spec.toml", "--db", "d.db").returncode, 0)
+        with open(self.path("d.db"), "r+b") as file:
+            size = file.seek(0, os.SEEK_END)
+            file.seek(4096 * 2)  # behind the schema: the file still opens
+            file.write(b"\xee" * (size - 4096 * 2))
+        for command in (("run", "spec.toml", "--db", "d.db"), ("status", "d.db"), ("digest", "d.db"),
+                        ("tables", "d.db"), ("query", "d.db", "--sql", "SELECT * FROM trials")):
+            self.refused("d.db: is damaged", *command)
+
+    def test_output_that_is_lost_is_a_failure(self):
+        self.assertEqual(self.call("run", "spec.toml", "--db", "f.db", "--trials", "2").returncode, 0)
+        for command in (("status", "f.db"), ("digest", "f.db"), ("tables", "f.db"), ("query", "f.db"), ("--help",)):
+            with open("/dev/full", "w") as full:
+                result = subprocess.run([FATMC, *command], cwd=self.cwd, stdout=full, stderr=subprocess.PIPE,
+                                        text=True, timeout=LIMIT_S)
+            self.assertEqual(result.returncode, 1, command)
+            self.assertIn("standard output could not be written", result.stderr)
+
+    def test_an_unknown_command_is_named(self):
+        self.refused('"bogus" is no command, write one of: run', "bogus")
+
+    def test_a_table_is_found_by_its_number_alone(self):
+        self.assertEqual(self.call("run", "spec.toml", "--db", "t.db", "--trials", "2").returncode, 0)
+        for only in ("Section 1.2", "1.2"):
+            result = self.call("tables", "t.db", "--only", only)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn("mean of a standard normal", result.stdout)
+        self.refused('no table "2"', "tables", "t.db", "--only", "2")
+
+    def test_a_run_without_an_estimate_says_so(self):
+        self.write("fail.toml", SPEC.replace("array = 3", "diverge_every = 1").replace("= 10\n", "= 1\n"))
+        result = self.call("run", "fail.toml", "--trials", "2")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("0 ok, 4 diverged", result.stdout)
+        self.assertIn("no trial gave an estimate", result.stdout)
 
     def test_plain_tcp_is_for_the_loopback_alone(self):
         self.refused("not on the loopback", "coordinator", "spec.toml", "--bind", "tcp://0.0.0.0:5555", "--db", "x.db")

@@ -61,6 +61,37 @@ TEST_F(TomlFile, AMissingModelFileIsReportedWhereItIsNamed) {
   EXPECT_EQ(tree.error().key, "model");
 }
 
+TEST_F(TomlFile, AModelThatIsNoFileNameIsReportedWhereItStands) {
+  EXPECT_EQ(read("\nmodel = 3\n").error().text(),
+            path_ + ":2: model: is an integer, write a file name in quotes");
+  const auto folder = read("\n\nmodel = \".\"\n");
+  ASSERT_FALSE(folder);
+  EXPECT_EQ(folder.error().line, 3);
+  EXPECT_EQ(folder.error().key, "model");
+  EXPECT_NE(folder.error().text().find("names the folder"), std::string::npos) << folder.error().text();
+}
+
+TEST_F(TomlFile, AKeyThatWasOnlyLookedForIsAmongTheKnownKeysOnce) {
+  const auto tree = read("lines = 1\nlimes = 2\n");
+  Decoder top(*tree, "");
+  EXPECT_FALSE(top.has("ranges_hz"));
+  EXPECT_TRUE(top.has("lines"));
+  EXPECT_EQ(top.integer("lines"), 1);
+  ASSERT_FALSE(top.finish());
+  EXPECT_EQ(top.error()->text(),
+            path_ + ":2: limes: is not a known key, the keys here are: lines, ranges_hz");
+}
+
+TEST_F(TomlFile, AWrongTypeHasItsArticle) {
+  const auto tree = read("name = 3\nspan_m = [1]\n");
+  Decoder top(*tree, "");
+  top.text("name");
+  EXPECT_EQ(top.error()->text(), path_ + ":1: name: is an integer, write a string");
+  Decoder again(*tree, "");
+  again.real("span_m");
+  EXPECT_EQ(again.error()->text(), path_ + ":2: span_m: is an array, write a number");
+}
+
 TEST_F(TomlFile, IdentityIgnoresRepetitionsLinesAndOrderButNotValues) {
   const std::string head = "[campaign]\nstudy = \"s\"\nseed = 1\n";
   const auto identity = [&](const std::string& rest) {

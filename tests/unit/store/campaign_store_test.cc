@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
 
 #include "coordinator/store/spec_difference.h"
 #include "coordinator/store/writer_lock.h"
@@ -177,6 +178,67 @@ TEST_F(Store, ADatabaseOfSomethingElseIsRefused) {
   EXPECT_FALSE(CampaignStore::open(path_, example_spec(), "build"));
 }
 
+TEST_F(Store, ADamagedDatabaseIsSaidToBeDamagedAndWhere) {
+  {
+    auto store = CampaignStore::open(path_, example_spec(), "build");
+    store->commit(std::vector{request({example_row(0, 0, 1.0)})});
+  }
+  {
+    // Behind the header of the first page (100 bytes) stands the root of the schema.
+    std::fstream file(path_, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(100);
+    file << std::string(400, '\xee');
+  }
+  const auto written = CampaignStore::open(path_, example_spec(), "build");
+  const auto read = CampaignReader::open(path_);
+  ASSERT_FALSE(written);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(written.error().text().find(path_ + ": is damaged"), 0U) << written.error().text();
+  EXPECT_EQ(read.error().text().find(path_ + ": is damaged"), 0U) << read.error().text();
+}
+
+TEST_F(Store, ResumingTakesOverTheFiguresToCompareWithAndKeepsTheRest) {
+  const auto with_published = [](std::optional<double> figure, std::int64_t repetitions) {
+    Tree tree = example_tree(1, repetitions);
+    if (figure) {
+      Tree published{Tree::Table{}, "published.toml", 1};
+      published.set("value", Tree{*figure, "published.toml", 2});
+      tree.set("published", published);
+    }
+    return *decode_campaign(tree);
+  };
+  const auto stored_text = [&] { return canonical_text(CampaignReader::open(path_)->spec().tree); };
+  for (const std::optional<double> figure :
+       {std::optional(90.0), std::optional(95.5), std::optional<double>()}) {
+    const CampaignSpec spec = with_published(figure, 10);
+    { ASSERT_TRUE(CampaignStore::open(path_, spec, "build")); }
+    EXPECT_EQ(stored_text(), canonical_text(spec.tree));
+    SQLite::Database db(path_);
+    EXPECT_EQ(db.execAndGet("SELECT spec_canonical FROM campaign").getString(), canonical_text(spec.tree));
+  }
+}
+
+TEST_F(Store, ASecondWriterIsToldSoWhateverSpecItHas) {
+  const auto first = CampaignStore::open(path_, example_spec(), "build");
+  ASSERT_TRUE(first);
+  const auto second = CampaignStore::open(path_, example_spec(2), "build");
+  ASSERT_FALSE(second);
+  EXPECT_NE(second.error().text().find("another coordinator"), std::string::npos) << second.error().text();
+}
+
+TEST_F(Store, APlaceThatCannotHoldADatabaseIsAnError) {
+  std::ofstream((folder_ / "notes")) << "notes";
+  for (const std::string& path : {folder_.string(), (folder_ / "notes" / "c.db").string(),
+                                  (folder_ / std::string(300, 'n')).string()}) {
+    const auto store = CampaignStore::open(path, example_spec(), "build");
+    ASSERT_FALSE(store);
+    EXPECT_EQ(store.error().file, path);
+    const auto reader = CampaignReader::open(path);
+    ASSERT_FALSE(reader);
+    EXPECT_EQ(reader.error().file, path);
+  }
+}
+
 TEST_F(Store, AFileWithoutTablesIsAsGoodAsNew) {
   {
     SQLite::Database blank(path_, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
@@ -196,6 +258,15 @@ TEST_F(Store, ASecondWriterIsRefused) {
   const auto second = CampaignStore::open(path_, example_spec(), "build");
   ASSERT_FALSE(second);
   EXPECT_NE(second.error().text().find("another coordinator"), std::string::npos);
+}
+
+TEST(SpecDifference, IsNeverInThePublishedFigures) {
+  Tree now = example_tree(1, 10), then = now;
+  now.set("published", Tree{1.0, "spec.toml", 2});
+  EXPECT_FALSE(first_difference(now, then));
+  EXPECT_FALSE(first_difference(then, now));
+  then.set("published", Tree{2.0, "spec.toml", 2});
+  EXPECT_FALSE(first_difference(now, then));
 }
 
 TEST(SpecDifference, NamesNewAndMissingKeysAndIgnoresRepetitions) {
