@@ -14,7 +14,8 @@ namespace {
 Result<double> speed_factor(const Record& record, double first_speed, const std::string& file) {
   const int v = record.column("V");
   if (std::find(record.auxiliary.begin(), record.auxiliary.end(), v) == record.auxiliary.end()) {
-    return fail(Error{file, 0, "speed-correction", "needs the airspeed: name the column V among the auxiliary channels"});
+    return fail(Error{file, 0, "speed-correction",
+                      "needs the airspeed: name the column V among the auxiliary channels"});
   }
   const double trim = record.trim_speed_m_s.value_or(first_speed);
   const double factor = std::abs(trim) / std::abs(record.samples.col(v).mean());
@@ -25,15 +26,16 @@ Result<double> speed_factor(const Record& record, double first_speed, const std:
 }
 
 /// A record ready for the method: period and lines known where it needs them, leading periods skipped.
-Result<Record> prepare_record(const EstimateOptions& options, EstimationMethod method, const std::string& file,
-                              double* first_speed) {
+Result<Record> prepare_record(const EstimateOptions& options, EstimationMethod method,
+                              const std::string& file, double* first_speed) {
   Result<Record> read = read_record(file, options.meta);
   if (!read) return fail(read.error());
   Record& record = *read;
   if (Status status = complete_period(record, file); !status) {
     if (needs_period(method)) return fail(status.error());
     if (options.skip_periods != 0) {
-      return fail(Error{file, 0, "skip-periods", "the record has no periods to skip: " + status.error().message});
+      return fail(
+          Error{file, 0, "skip-periods", "the record has no periods to skip: " + status.error().message});
     }
     if (record.periods != 1) {  // one period that the record names still says which lines are excited
       record.periods = record.period_samples = 0;
@@ -44,10 +46,11 @@ Result<Record> prepare_record(const EstimateOptions& options, EstimationMethod m
   *first_speed = v >= 0 ? record.samples(0, v) : 0.0;
   if (Status status = skip_periods(record, options.skip_periods, file); !status) return fail(status.error());
   if (!record.reference.empty() && record.reference.size() != record.input.size()) {
-    return fail(Error{file, 0, "reference", std::to_string(record.reference.size()) + " references for " +
-                                                std::to_string(record.input.size()) +
-                                                " inputs: the indirect estimate needs one a input; leave the "
-                                                "references out for a direct one"});
+    return fail(Error{file, 0, "reference",
+                      std::to_string(record.reference.size()) + " references for " +
+                          std::to_string(record.input.size()) +
+                          " inputs: the indirect estimate needs one a input; leave the "
+                          "references out for a direct one"});
   }
   return read;
 }
@@ -61,13 +64,20 @@ Measurement measurement_of(const Record& record) {
 
 std::string method_title(EstimationMethod method) {
   switch (method) {
-    case EstimationMethod::lpm: return "fast LPM";
-    case EstimationMethod::tlpm: return "transient LPM";
-    case EstimationMethod::etfe: return "ETFE";
-    case EstimationMethod::lrm: return "local rational method";
-    case EstimationMethod::arbitrary: return "LPM for arbitrary excitation";
-    case EstimationMethod::robust: return "robust method";
-    case EstimationMethod::welch: return "Welch";
+    case EstimationMethod::lpm:
+      return "fast LPM";
+    case EstimationMethod::tlpm:
+      return "transient LPM";
+    case EstimationMethod::etfe:
+      return "ETFE";
+    case EstimationMethod::lrm:
+      return "local rational method";
+    case EstimationMethod::arbitrary:
+      return "LPM for arbitrary excitation";
+    case EstimationMethod::robust:
+      return "robust method";
+    case EstimationMethod::welch:
+      return "Welch";
   }
   return "";
 }
@@ -129,8 +139,10 @@ void add_estimate_options(CLI::App& command, EstimateOptions& options) {
   command.add_option("--order", options.estimator.order, "degree of the polynomials")
       ->check(CLI::Range(0, 10))
       ->capture_default_str();
-  command.add_option("--n-transient", options.estimator.n_transient,
-                     "non-excited bins on each side of a line: 5, tlpm with 5 periods and more: (periods + order)/2")
+  command
+      .add_option(
+          "--n-transient", options.estimator.n_transient,
+          "non-excited bins on each side of a line: 5, tlpm with 5 periods and more: (periods + order)/2")
       ->check(CLI::Range(1, 100000));
   command.add_option("--skip-periods", options.skip_periods, "leading periods to leave out")
       ->check(CLI::Range(0, 1000000))
@@ -148,13 +160,19 @@ void print_estimate_head(const EstimateOptions& options, const EstimatedRecord& 
     std::printf("%s: %d samples at %s Hz, ", options.records.front().c_str(), e.record.sample_count(),
                 shortest(e.record.rate_hz).c_str());
   }
-  std::printf("%d lines, %s to %s Hz\n", frm.line_count(), significant(frm.frequency_hz.front(), 4).c_str(),
+  std::printf("%d %slines, %s to %s Hz\n", frm.line_count(), e.record.periods > 0 ? "excited " : "",
+              significant(frm.frequency_hz.front(), 4).c_str(),
               significant(frm.frequency_hz.back(), 4).c_str());
-  std::printf("%s, %s: q = %d degrees of freedom", method_title(e.method).c_str(), frm.indirect ? "indirect" : "direct",
-              frm.q);
+  std::printf("%s, %s", method_title(e.method).c_str(), frm.indirect ? "indirect" : "direct");
+  if (e.method == EstimationMethod::lpm || e.method == EstimationMethod::arbitrary ||
+      e.method == EstimationMethod::lrm) {
+    std::printf(", order %d, n_E %d", options.estimator.order, options.estimator.n_e_of(e.method));
+  }
+  std::printf(": q = %d degrees of freedom", frm.q);
   if (frm.q_noise > 0) std::printf(" (noise %d)", frm.q_noise);
   std::printf("\n");
-  if (options.speed_correction) std::printf("speed correction (3.4): factor %s\n", significant(e.speed_factor, 5).c_str());
+  if (options.speed_correction)
+    std::printf("speed correction (3.4): factor %s\n", significant(e.speed_factor, 5).c_str());
 }
 
 }  // namespace fatmc::cli
