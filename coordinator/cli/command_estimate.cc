@@ -19,6 +19,7 @@ Exit run_estimate(const EstimateArguments& arguments) {
   if (arguments.speed_correction && arguments.records.size() > 1) {
     return report(Error{"", 0, "--speed-correction", "takes one record, correct several by their own speeds first"});
   }
+  if (Status status = check_output_directory(arguments.directory); !status) return report(status.error());
   const Result<EstimatedRecord> result = estimate_records(arguments, *method);
   if (!result) return report(result.error());
   std::filesystem::create_directories(arguments.directory);

@@ -212,6 +212,7 @@ void print_summary(const StabilityArguments& arguments, const JudgedRecord& judg
 }
 
 Exit run_stability(StabilityArguments& arguments) {
+  if (Status status = check_output_directory(arguments.directory); !status) return report(status.error());
   arguments.options.combine = arguments.combine == "min" ? CombinationRule::min : CombinationRule::bonferroni;
   arguments.options.bias = arguments.bias == "on";
   const Result<JudgedRecord> judged = judge(arguments);
