@@ -43,10 +43,12 @@ void add_estimate_command(CLI::App& app, Exit& exit) {
   add_estimate_options(*command, *arguments);
   command->add_option("--segment", options.welch.segment_samples, "welch: samples a segment, 0: a period or an eighth")
       ->capture_default_str();
-  command->add_option("--overlap", options.welch.overlap, "welch: share of a segment")->capture_default_str();
-  command->add_option("--taper", options.welch.taper, "welch: hann or none")
+  command->add_option("--overlap", options.welch.overlap, "welch: share of a segment; half of it is what a Hann taper leaves unused")->capture_default_str();
+  command->add_option("--taper", options.welch.taper, "welch: hann or none; Hann where segments are no whole periods, none where they are")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Taper>{{"hann", Taper::hann}, {"none", Taper::none}}))
       ->default_str("hann");
+  command->add_flag("--bias-variants", arguments->bias_variants,
+                    "lpm: the bias with the printed, the limit's and the actual constants side by side in estimate.json");
   command->add_option("-o,--output", arguments->directory, "directory for frm.csv and estimate.json")->required();
   command->footer("Example: fatmc estimate flight.csv --n-e 9 --skip-periods 1 -o results/flight");
   command->callback([arguments, &exit] { exit = run_estimate(*arguments); });

@@ -16,8 +16,10 @@ int run(int argc, char** argv) {
   add_digest_command(app, exit);
   add_tables_command(app, exit);
   add_linearize_command(app, exit);
+  add_design_command(app, exit);
   add_simulate_command(app, exit);
   add_estimate_command(app, exit);
+  add_noise_command(app, exit);
   add_ssv_command(app, exit);
   add_stability_command(app, exit);
   return run_application(app, exit, argc, argv);

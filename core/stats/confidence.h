@@ -16,6 +16,9 @@ double f_cdf_2_2q(double x, double q);
 /// Quantile of F(2, 2q), 0 <= p <= 1 (infinite at 1). q > 0.
 double f_quantile_2_2q(double p, double q);
 
+/// Quantile of F(m, n) for any degrees of freedom, 0 < p < 1.
+double f_quantile(double p, double m, double n);
+
 /// Radius of the disc that holds an element with probability p: sqrt(variance F^-1(p; 2, 2q)) (T 2.207, 5.11).
 double confidence_radius(double variance, double p, double q);
 
