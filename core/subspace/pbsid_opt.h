@@ -10,6 +10,11 @@
 //   residual  C first, e_t = y_t - C x_t; then [A B K] from x_{t+1} on [x_t; u_t; e_t]. No Riccati equation,
 //   and nothing
 //             keeps A - K C stable
+// Where a controller without delay feeds y_t back into u_t, u_t and e_t are correlated: e_t stands in the
+// residual of (A.14) as K e_t, so that `paper` is biased there while `residual`, which has e_t among its
+// regressors, is not (the test shows both). With a delay of one sample in the loop, or in open loop, both are
+// unbiased.
+//
 // t runs over p ... N-2 of each maneuver (A.14 written for all of them, A.15).
 #pragma once
 

@@ -17,7 +17,8 @@ struct Doubling {
   Eigen::MatrixXd a, g, h;
 };
 
-bool converged_step(Doubling& state, double* change) {
+/// One doubling; true where it changed nothing any more. `scale`: of the noise, against which P may vanish.
+bool converged_step(Doubling& state, double scale) {
   const Eigen::Index n = state.a.rows();
   const Eigen::PartialPivLU<Eigen::MatrixXd> lu(Eigen::MatrixXd::Identity(n, n) + state.g * state.h);
   const Eigen::MatrixXd wa = lu.solve(state.a);  // (I + G H)^-1 A
@@ -28,8 +29,7 @@ bool converged_step(Doubling& state, double* change) {
   state.a = state.a * wa;
   state.g = 0.5 * (state.g + state.g.transpose()).eval();
   state.h = 0.5 * (state.h + state.h.transpose()).eval();
-  *change = added.norm();
-  return added.norm() <= kConverged * state.h.norm();
+  return added.norm() <= kConverged * (state.h.norm() + scale);
 }
 
 double equation_residual(const Eigen::Ref<const Eigen::MatrixXd>& a,
@@ -38,8 +38,8 @@ double equation_residual(const Eigen::Ref<const Eigen::MatrixXd>& a,
   const Eigen::MatrixXd innovation = c * gain.p * c.transpose() + noise.r;
   const Eigen::MatrixXd next =
       a * gain.p * a.transpose() + noise.q - gain.k * innovation * gain.k.transpose();
-  const double scale = gain.p.norm();
-  return scale > 0.0 ? (next - gain.p).norm() / scale : (next - gain.p).norm();
+  const double scale = gain.p.norm() + noise.q.norm();
+  return scale > 0.0 ? (next - gain.p).norm() / scale : 0.0;
 }
 
 }  // namespace
@@ -61,8 +61,7 @@ Result<KalmanGain> kalman_gain(const Eigen::Ref<const Eigen::MatrixXd>& a,
   KalmanGain out;
   bool done = false;
   while (!done && out.iterations < kMostIterations) {
-    double change = 0.0;
-    done = converged_step(state, &change);
+    done = converged_step(state, noise.q.norm());
     ++out.iterations;
     if (!state.h.allFinite() || !state.a.allFinite()) break;
   }
@@ -73,8 +72,8 @@ Result<KalmanGain> kalman_gain(const Eigen::Ref<const Eigen::MatrixXd>& a,
   out.k = innovation.ldlt().solve(cross.transpose()).transpose();
   out.residual = equation_residual(a, c, noise, out);
   if (!(out.residual <= kWorstResidual)) {
-    return fail("the Riccati equation is solved to a relative residual of only " +
-                significant(out.residual, 2));
+    return fail("the Riccati equation has no stabilising solution to the digits at hand (relative residual " +
+                significant(out.residual, 2) + ")");
   }
   const auto radius = spectral_radius(a - out.k * c);
   if (!radius || !(*radius < 1.0))

@@ -24,7 +24,7 @@ struct NoiseCovariance {
 struct KalmanGain {
   Eigen::MatrixXd k;      ///< n x n_y
   Eigen::MatrixXd p;      ///< n x n, stabilising solution
-  double residual = 0.0;  ///< Frobenius norm of the equation's residual over that of P
+  double residual = 0.0;  ///< Frobenius norm of the equation's residual over ||P|| + ||Q||
   int iterations = 0;
   double predictor_radius = 0.0;  ///< largest |eigenvalue| of A - K C
 };
