@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "coordinator/cli/command.h"
-#include "coordinator/cli/estimate_record.h"
 #include "coordinator/cli/identify_record.h"
+#include "coordinator/cli/output_path.h"
 #include "core/base/text.h"
 #include "core/record/column_file.h"
 
