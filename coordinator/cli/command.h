@@ -28,11 +28,13 @@ void add_noise_command(CLI::App& app, Exit& exit);
 void add_estimate_command(CLI::App& app, Exit& exit);
 void add_run_command(CLI::App& app, Exit& exit);
 void add_coordinator_command(CLI::App& app, Exit& exit);
+void add_keygen_command(CLI::App& app, Exit& exit);
 void add_status_command(CLI::App& app, Exit& exit);
 void add_query_command(CLI::App& app, Exit& exit);
 void add_digest_command(CLI::App& app, Exit& exit);
 void add_tables_command(CLI::App& app, Exit& exit);
 void add_ssv_command(CLI::App& app, Exit& exit);
+void add_identify_command(CLI::App& app, Exit& exit);
 void add_stability_command(CLI::App& app, Exit& exit);
 
 }  // namespace fatmc::cli

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "coordinator/cli/command.h"
-#include "coordinator/cli/estimate_record.h"
+#include "coordinator/cli/output_path.h"
 #include "coordinator/input/record_file.h"
 #include "core/base/text.h"
 #include "core/ident/noise_model.h"

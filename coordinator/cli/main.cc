@@ -11,6 +11,7 @@ int run(int argc, char** argv) {
   Exit exit = Exit::done;
   add_run_command(app, exit);
   add_coordinator_command(app, exit);
+  add_keygen_command(app, exit);
   add_status_command(app, exit);
   add_query_command(app, exit);
   add_digest_command(app, exit);
@@ -22,6 +23,7 @@ int run(int argc, char** argv) {
   add_noise_command(app, exit);
   add_ssv_command(app, exit);
   add_stability_command(app, exit);
+  add_identify_command(app, exit);
   return run_application(app, exit, argc, argv);
 }
 
