@@ -18,6 +18,7 @@ int run(int argc, char** argv) {
   add_linearize_command(app, exit);
   add_simulate_command(app, exit);
   add_estimate_command(app, exit);
+  add_predict_command(app, exit);
   add_ssv_command(app, exit);
   add_stability_command(app, exit);
   return run_application(app, exit, argc, argv);
