@@ -10,6 +10,8 @@ namespace fatmc::cli {
 struct EstimateArguments : EstimateOptions {
   std::string method = "lpm";
   std::string directory;
+  bool plots = false;
+  std::string reference;  ///< empty, or what to compare the plots with
 };
 
 /// line,frequency_hz,output,input,re,im,variance,bias; the last field is empty where the method has no bias estimate.

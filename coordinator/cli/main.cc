@@ -19,6 +19,7 @@ int run(int argc, char** argv) {
   add_linearize_command(app, exit);
   add_simulate_command(app, exit);
   add_estimate_command(app, exit);
+  add_predict_command(app, exit);
   add_ssv_command(app, exit);
   add_stability_command(app, exit);
   add_identify_command(app, exit);
