@@ -78,17 +78,25 @@ void add_estimate_command(CLI::App& app, Exit& exit) {
       ->add_option("--segment", options.welch.segment_samples,
                    "welch: samples a segment, 0: a period or an eighth")
       ->capture_default_str();
-  command->add_option("--overlap", options.welch.overlap, "welch: share of a segment")->capture_default_str();
-  command->add_option("--taper", options.welch.taper, "welch: hann or none")
+  command
+      ->add_option("--overlap", options.welch.overlap,
+                   "welch: share of a segment; half of it is what a Hann taper leaves unused")
+      ->capture_default_str();
+  command
+      ->add_option("--taper", options.welch.taper,
+                   "welch: hann or none; Hann where segments are no whole periods, none where they are")
       ->transform(
           CLI::CheckedTransformer(std::map<std::string, Taper>{{"hann", Taper::hann}, {"none", Taper::none}}))
       ->default_str("hann");
+  command->add_flag(
+      "--bias-variants", arguments->bias_variants,
+      "lpm: the bias with the printed, the limit's and the actual constants side by side in estimate.json");
   command->add_flag("--plots", arguments->plots,
                     "also draw response.svg: magnitude, phase and confidence region of every element");
-  command->add_option("--reference", arguments->reference,
-                      "MODEL (TOML of kind aircraft, state_space or frf) or frm.csv to draw beside it, with "
-                      "MUAD envelopes, and "
-                      "error.svg: the error response function");
+  command->add_option(
+      "--reference", arguments->reference,
+      "MODEL (TOML of kind aircraft, state_space or frf) or frm.csv to draw beside it, with MUAD "
+      "envelopes, and error.svg: the error response function");
   command->add_option("-o,--output", arguments->directory, "directory for frm.csv and estimate.json")
       ->required();
   command->footer("Example: fatmc estimate flight.csv --n-e 9 --skip-periods 1 -o results/flight");

@@ -98,6 +98,29 @@ std::string method_title(EstimationMethod method) {
   return "";
 }
 
+/// Why the excitation channels do not span all directions, and what to do about it.
+std::string dependence(const Record& record, bool indirect) {
+  const std::vector<int>& channels = indirect ? record.reference : record.input;
+  Eigen::MatrixXd x = record.channels(channels);
+  x.rowwise() -= x.colwise().mean().eval();
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      if (std::abs(x.col(i).dot(x.col(j))) > 0.999 * x.col(i).norm() * x.col(j).norm()) {
+        const auto name = [&](Eigen::Index c) {
+          return record.names[static_cast<std::size_t>(channels[static_cast<std::size_t>(c)])];
+        };
+        return name(j) + " and " + name(i) +
+               " carry the same signal, so that their effects cannot be told apart: give each input phases "
+               "of its own, "
+               "or leave one out";
+      }
+    }
+  }
+  return "the excitation channels depend on each other within its window: give each input phases of its own, "
+         "or take "
+         "a larger --n-e";
+}
+
 /// Periodic methods stand or fall with all their lines; the others leave out lines that nothing excites.
 Status check_lines(const EstimatedRecord& e, const std::string& file) {
   const FrmEstimate& frm = e.response.frm;
@@ -106,7 +129,7 @@ Status check_lines(const EstimatedRecord& e, const std::string& file) {
     const LineStatus status = frm.status[static_cast<std::size_t>(k)];
     if (status == LineStatus::ok || (some && !needs_period(e.method))) continue;
     const std::string what = status == LineStatus::singular_regressor
-                                 ? "the excitation channels depend on each other, name independent ones"
+                                 ? dependence(e.record, frm.indirect)
                                  : "an input does not follow the references, leave it out";
     return fail(Error{file, 0, "line " + std::to_string(frm.lines[static_cast<std::size_t>(k)]), what});
   }
@@ -152,17 +175,29 @@ Result<EstimatedRecord> estimate_records(const EstimateOptions& options, Estimat
 
 void add_estimate_options(CLI::App& command, EstimateOptions& options) {
   command.add_option("--meta", options.meta, "the records' TOML where it is not beside the CSV");
-  command.add_option("--n-e", options.estimator.n_e, "lines (bins) on each side of a line: 9, lrm 6")
+  command
+      .add_option("--n-e", options.estimator.n_e,
+                  "lines (bins) on each side of a line: 9, which leaves q = 10 for three inputs and order 2; "
+                  "lrm 6, more "
+                  "would reach past a lightly damped mode")
       ->check(CLI::Range(1, 100000));
-  command.add_option("--order", options.estimator.order, "degree of the polynomials")
+  command
+      .add_option(
+          "--order", options.estimator.order,
+          "degree of the polynomials: odd ones gain nothing in a centred window, 4 needs twice the lines")
       ->check(CLI::Range(0, 10))
       ->capture_default_str();
   command
       .add_option(
           "--n-transient", options.estimator.n_transient,
-          "non-excited bins on each side of a line: 5, tlpm with 5 periods and more: (periods + order)/2")
+          "non-excited bins on each side of a line: 5, which leaves 7 degrees of freedom of the noise for "
+          "order "
+          "2; tlpm with 5 periods and more: (periods + order)/2, for q = periods - 1 as the ETFE has it")
       ->check(CLI::Range(1, 100000));
-  command.add_option("--skip-periods", options.skip_periods, "leading periods to leave out")
+  command
+      .add_option("--skip-periods", options.skip_periods,
+                  "leading periods to leave out: none, since transients are estimated; etfe and welch need a "
+                  "steady state")
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str();
   command.add_option("--band", options.band_hz, "LOW HIGH in Hz, for methods that take any bin: arbitrary, lrm, welch")

@@ -17,9 +17,11 @@ int run(int argc, char** argv) {
   add_digest_command(app, exit);
   add_tables_command(app, exit);
   add_linearize_command(app, exit);
+  add_design_command(app, exit);
   add_simulate_command(app, exit);
   add_estimate_command(app, exit);
   add_predict_command(app, exit);
+  add_noise_command(app, exit);
   add_ssv_command(app, exit);
   add_stability_command(app, exit);
   add_identify_command(app, exit);

@@ -33,6 +33,7 @@ Result<ResponseEstimate> fast_lpm(const Measurement& m, const EstimatorOptions& 
   ResponseEstimate out;
   out.frm = m.indirect() ? lpm.indirect(spectra_at_lines(*grid, m.references)) : lpm.direct();
   out.bias = interpolation_bias(*grid, out.frm);
+  out.grid = std::move(*grid);
   return out;
 }
 

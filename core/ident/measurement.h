@@ -30,6 +30,7 @@ struct ResponseEstimate {
   FrmEstimate frm;
   MatrixStack<double> bias;       ///< n_out x n_in a line; empty where the method has no estimate of its bias
   MatrixStack<double> coherence;  ///< n_out x 1 a line, multiple coherence; empty for methods without one
+  std::optional<LpmGrid> grid;    ///< windows behind a fast LPM estimate; none for other methods
   std::vector<int> fallback;      ///< lines (harmonics) where a simpler method stepped in
   std::vector<std::string> notes; ///< one sentence each, for the reader of the result
 };
