@@ -1,5 +1,6 @@
 #include "coordinator/cli/campaign_session.h"
 
+#include <spdlog/cfg/env.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -10,6 +11,7 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <random>
 #include <set>
 
 #include "campaigns/registry_summaries.h"
@@ -95,6 +97,22 @@ Exit print_summary(const std::string& database) {
   return Exit::done;
 }
 
+// Trials that were given up make a campaign partial.
+Exit report_quarantine(const SessionOptions& options) {
+  Result<CampaignReader> reader = CampaignReader::open(options.database);
+  if (!reader) return report(reader.error());
+  std::uint64_t given_up = 0;
+  for (const OutcomeCount& count : reader->outcomes())
+    if (count.outcome == kQuarantined) given_up += count.trials;
+  if (given_up == 0) return Exit::done;
+  std::fprintf(
+      stderr,
+      "fatmc: %llu trials are quarantined, since each killed its worker three times; fatmc query %s --view "
+      "failures tells how, and this tries them again: %s --retry-quarantined\n",
+      static_cast<unsigned long long>(given_up), options.database.c_str(), options.resume_command.c_str());
+  return Exit::partial;
+}
+
 void report_counters(const CampaignState& state, std::uint64_t malformed) {
   const StateCounters& c = state.counters();
   if (c.conflicts > 0) {
@@ -105,9 +123,11 @@ void report_counters(const CampaignState& state, std::uint64_t malformed) {
         static_cast<unsigned long long>(c.conflicts));
   }
   spdlog::info(
-      "duplicates {}, conflicts {}, reclaimed leases {}, refused {}, foreign {}, out of plan {}, malformed "
-      "{}",
-      c.duplicates, c.conflicts, c.reclaimed, c.refused_hellos, c.foreign, c.out_of_plan, malformed);
+      "duplicates {}, conflicts {}, reclaimed leases {}, copies {}, quarantined {}, refused {}, foreign {}, "
+      "out of "
+      "plan {}, malformed {}",
+      c.duplicates, c.conflicts, c.reclaimed, c.copied, c.quarantined, c.refused_hellos, c.foreign,
+      c.out_of_plan, malformed);
 }
 
 // What a session needs of this machine, had before the database is touched. In this order: an ipc path is
@@ -144,15 +164,20 @@ Result<Place> take_place(const SessionOptions& options) {
   return Place{std::move(program), std::move(worker_keys), std::move(*lock), std::move(*socket)};
 }
 
+// Apart from those of the coordinator before, whatever became of the clock meanwhile.
+std::uint64_t random_lease() {
+  std::random_device device;
+  return (std::uint64_t{device()} << 30) + 1;
+}
+
 // The serving part; returns nothing when all is stored.
 std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& options, Place place,
                           CampaignStore& store) {
   StateOptions state_options;
-  state_options.first_lease =
-      static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(
-                                     std::chrono::system_clock::now().time_since_epoch())
-                                     .count());
-  CampaignState state(store.plan(spec), Welcome{spec.identity(), spec.tree, 0}, build_hash(), state_options);
+  state_options.first_lease = random_lease();
+  const StoredTrials counted = options.retry_quarantined ? StoredTrials::results : StoredTrials::all;
+  CampaignState state(store.plan(spec, counted), Welcome{spec.identity(), spec.tree, 0}, build_hash(),
+                      state_options);
   if (state.finished()) {
     write_last(options.database);
     return std::nullopt;
@@ -184,7 +209,7 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
     write_last(options.database);
   };
   hooks.on_child = [&] {
-    for (const std::uint32_t pid : workers.reap(state.stored())) server.on_process_ended(pid);
+    for (const EndedProcess& ended : workers.reap(state.counters().results)) server.on_process_ended(ended.pid, ended.how);
   };
   hooks.failure = [&] { return workers.failure(); };
   const ServerEnd end = server.run(hooks);
@@ -229,7 +254,8 @@ std::string shell_line(const std::vector<std::string>& words) {
 
 Exit run_session(const CampaignSpec& spec, const SessionOptions& options) {
   spdlog::set_default_logger(spdlog::stderr_logger_mt("coordinator"));
-  spdlog::set_level(options.verbose ? spdlog::level::debug : spdlog::level::off);
+  spdlog::set_level(options.verbose ? spdlog::level::info : spdlog::level::warn);
+  spdlog::cfg::load_env_levels();  // SPDLOG_LEVEL=debug: every message, too
   {
     const BlockedSignals blocked;
     Result<Place> place = take_place(options);
@@ -245,7 +271,10 @@ Exit run_session(const CampaignSpec& spec, const SessionOptions& options) {
     if (opened != Exit::done) return opened;
     if (exit) return *exit;
   }
-  return use_database(options.database, [&] { return print_summary(options.database); });
+  return use_database(options.database, [&] {
+    const Exit printed = print_summary(options.database);
+    return printed == Exit::done ? report_quarantine(options) : printed;
+  });
 }
 
 }  // namespace fatmc::cli

@@ -17,6 +17,8 @@ struct SessionOptions {
   /// Worker processes to start here; 0: workers come by themselves.
   unsigned workers = 0;
   bool verbose = false;
+  /// Trials that were given up are tried again.
+  bool retry_quarantined = false;
   /// The command that resumes this one.
   std::string resume_command;
 };

@@ -26,6 +26,7 @@ void add_simulate_command(CLI::App& app, Exit& exit);
 void add_design_command(CLI::App& app, Exit& exit);
 void add_noise_command(CLI::App& app, Exit& exit);
 void add_estimate_command(CLI::App& app, Exit& exit);
+void add_predict_command(CLI::App& app, Exit& exit);
 void add_run_command(CLI::App& app, Exit& exit);
 void add_coordinator_command(CLI::App& app, Exit& exit);
 void add_keygen_command(CLI::App& app, Exit& exit);
@@ -34,6 +35,7 @@ void add_query_command(CLI::App& app, Exit& exit);
 void add_digest_command(CLI::App& app, Exit& exit);
 void add_tables_command(CLI::App& app, Exit& exit);
 void add_ssv_command(CLI::App& app, Exit& exit);
+void add_monitor_command(CLI::App& app, Exit& exit);
 void add_identify_command(CLI::App& app, Exit& exit);
 void add_stability_command(CLI::App& app, Exit& exit);
 

@@ -14,7 +14,7 @@ struct RunOptions {
   std::string database;
   unsigned workers = std::max(1U, std::thread::hardware_concurrency());
   SpecChanges changes;
-  bool verbose = false;
+  bool verbose = false, retry_quarantined = false;
 };
 
 std::string resume_command(const RunOptions& options, const std::string& database) {
@@ -31,6 +31,7 @@ Exit run(const RunOptions& options) {
   session.database = options.database.empty() ? default_database(*spec) : options.database;
   session.workers = options.workers;
   session.verbose = options.verbose;
+  session.retry_quarantined = options.retry_quarantined;
   session.resume_command = resume_command(options, session.database);
   return run_session(*spec, session);
 }
@@ -50,7 +51,9 @@ void add_run_command(CLI::App& app, Exit& exit) {
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
   add_spec_options(*command, options->changes);
-  command->add_flag("--verbose", options->verbose, "log messages to standard error");
+  command->add_flag("--retry-quarantined", options->retry_quarantined,
+                    "try trials again that were given up because they killed their workers");
+  command->add_flag("--verbose", options->verbose, "log what is decided and why to standard error");
   command->callback([options, &exit] { exit = run(*options); });
 }
 

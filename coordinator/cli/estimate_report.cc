@@ -26,7 +26,9 @@ std::string transient_convention(const EstimatedRecord& e) {
       return "polynomial of degree order through the n_transient nearest non-excited bins on each side, or where that is "
              "null through the periods + order nearest ones in all" + place;
     case EstimationMethod::etfe: return "none is removed: skip the periods that are not steady";
-    case EstimationMethod::arbitrary: return "polynomial of degree order, estimated with the response";
+    case EstimationMethod::arbitrary:
+      return e.records > 1 ? "none is removed: records start and end at rest"
+                           : "polynomial of degree order, estimated with the response";
     case EstimationMethod::welch: return "none is removed; the mean of each segment is";
     case EstimationMethod::lrm:
       if (!periodic(e)) return "rational of degree order with the response's denominator, estimated with the response";
@@ -41,7 +43,9 @@ std::string window_convention(const EstimatedRecord& e) {
     case EstimationMethod::tlpm:
     case EstimationMethod::etfe: return "each line by itself: as many records as inputs, or one input a line";
     case EstimationMethod::robust: return "each line by itself, least squares over records";
-    case EstimationMethod::arbitrary: return "2 n_e + 1 DFT bins, n_e on each side, shifted at the ends";
+    case EstimationMethod::arbitrary:
+      return std::string("2 n_e + 1 DFT bins") + (e.records > 1 ? " of all records" : "") +
+             ", n_e on each side, shifted at the ends" + (e.records > 1 ? "; fallback_lines by themselves" : "");
     case EstimationMethod::welch: return "each bin of a segment by itself, least squares over segments";
     case EstimationMethod::lrm:
       if (!periodic(e)) return "2 n_e + 1 DFT bins, n_e on each side, shifted at the ends";

@@ -10,6 +10,8 @@ namespace fatmc::cli {
 struct EstimateArguments : EstimateOptions {
   std::string method = "lpm";
   std::string directory;
+  bool plots = false;
+  std::string reference;  ///< empty, or what to compare the plots with
   bool bias_variants = false;  ///< the bias with every constant into estimate.json
 };
 

@@ -141,8 +141,11 @@ struct CampaignStore::Parts {
   WriterLock lock;
   std::string path;
   SQLite::Database db;
-  std::optional<SQLite::Statement> insert_trial, find_hash, insert_metric, insert_array, insert_name;
+  std::optional<SQLite::Statement> insert_trial, find_hash, remove_trial, insert_metric, insert_array,
+      insert_name;
   std::map<std::string, std::int64_t, std::less<>> names;
+  // The last transaction failed: statements may stand in the middle, and names of it are not stored.
+  bool rolled_back = false;
 
   Parts(WriterLock held, const std::string& file)
       : lock(std::move(held)),
@@ -151,18 +154,22 @@ struct CampaignStore::Parts {
 
   // Leaves a single file that may be copied, unless a reader is in it at this moment.
   ~Parts() {
-    for (auto* statement : {&insert_trial, &find_hash, &insert_metric, &insert_array, &insert_name})
+    for (auto* statement :
+         {&insert_trial, &find_hash, &remove_trial, &insert_metric, &insert_array, &insert_name})
       statement->reset();
     db.tryExec("PRAGMA journal_mode = DELETE");
   }
 
   void prepare() {
     insert_trial.emplace(db, "INSERT OR IGNORE INTO trial VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-    find_hash.emplace(db, "SELECT content_hash FROM trial WHERE id = ?");
+    find_hash.emplace(db, "SELECT content_hash, outcome FROM trial WHERE id = ?");
+    remove_trial.emplace(db, "DELETE FROM trial WHERE id = ?");
     insert_metric.emplace(db, "INSERT INTO metric VALUES (?, ?, ?, ?)");
     insert_array.emplace(db, "INSERT INTO array VALUES (?, ?, ?, ?)");
     insert_name.emplace(db, "INSERT INTO name (text) VALUES (?)");
+    names.clear();
     SQLite::Statement all(db, "SELECT id, text FROM name");
+    rolled_back = false;
     while (all.executeStep()) names.emplace(all.getColumn(1).getString(), all.getColumn(0).getInt64());
   }
 
@@ -176,7 +183,28 @@ struct CampaignStore::Parts {
   }
 
   StoreOutcome insert(const ComputedRow& computed, const StoreRequest& request, std::uint32_t attempts);
+  StoreOutcome compare(const ComputedRow& computed);
+  std::vector<StoreReport> commit(std::span<const StoreRequest> requests);
 };
+
+// What there is to say about a row whose trial is stored already; `stored` when it made room for it.
+StoreOutcome CampaignStore::Parts::compare(const ComputedRow& computed) {
+  const std::int64_t id = trial_id(computed.row.key);
+  find_hash->bind(1, id);
+  const bool found = find_hash->executeStep();
+  const SQLite::Column hash = find_hash->getColumn(0);
+  const bool same = found && hash.getBytes() == static_cast<int>(computed.hash.size()) &&
+                    std::memcmp(hash.getBlob(), computed.hash.data(), computed.hash.size()) == 0;
+  const bool was_given_up = found && find_hash->getColumn(1).getString() == kQuarantined;
+  find_hash->reset();
+  // Given up again, or given up while its result was on its way: no conflict of results.
+  if (same || (found && computed.row.outcome == kQuarantined)) return StoreOutcome::duplicate;
+  if (!was_given_up) return StoreOutcome::conflict;
+  remove_trial->bind(1, id);
+  remove_trial->exec();
+  remove_trial->reset();
+  return StoreOutcome::stored;
+}
 
 StoreOutcome CampaignStore::Parts::insert(const ComputedRow& computed, const StoreRequest& request,
                                           std::uint32_t attempts) {
@@ -197,13 +225,8 @@ StoreOutcome CampaignStore::Parts::insert(const ComputedRow& computed, const Sto
   const int inserted = trial.exec();
   trial.reset();
   if (inserted == 0) {
-    find_hash->bind(1, id);
-    const bool found = find_hash->executeStep();
-    const SQLite::Column hash = find_hash->getColumn(0);
-    const bool same = found && hash.getBytes() == static_cast<int>(computed.hash.size()) &&
-                      std::memcmp(hash.getBlob(), computed.hash.data(), computed.hash.size()) == 0;
-    find_hash->reset();
-    return same ? StoreOutcome::duplicate : StoreOutcome::conflict;
+    const StoreOutcome outcome = compare(computed);
+    return outcome == StoreOutcome::stored ? insert(computed, request, attempts) : outcome;
   }
   for (std::size_t i = 0; i < row.metrics.size(); ++i) {
     const auto& [name, value] = row.metrics[i];
@@ -276,10 +299,14 @@ Result<CampaignStore> CampaignStore::open(WriterLock held, const std::string& pa
   }
 }
 
-std::vector<PlanCell> CampaignStore::plan(const CampaignSpec& spec) {
+std::vector<PlanCell> CampaignStore::plan(const CampaignSpec& spec, StoredTrials counted) {
   std::vector<PlanCell> plan;
   for (const Cell& cell : spec.cells) plan.push_back({cell.repetitions, {}});
-  SQLite::Statement keys(parts_->db, "SELECT cell, repetition FROM trial ORDER BY id");
+  SQLite::Statement keys(parts_->db,
+                         counted == StoredTrials::all
+                             ? "SELECT cell, repetition FROM trial ORDER BY id"
+                             : "SELECT cell, repetition FROM trial WHERE outcome <> ? ORDER BY id");
+  if (counted == StoredTrials::results) keys.bind(1, kQuarantined);
   PlanCell* cell = nullptr;
   std::uint64_t first = 0, last = 0;
   const auto close = [&] {
@@ -299,19 +326,30 @@ std::vector<PlanCell> CampaignStore::plan(const CampaignSpec& spec) {
   return plan;
 }
 
-std::vector<StoreReport> CampaignStore::commit(std::span<const StoreRequest> requests) {
+std::vector<StoreReport> CampaignStore::Parts::commit(std::span<const StoreRequest> requests) {
   std::vector<StoreReport> reports;
-  SQLite::Transaction transaction(parts_->db, SQLite::TransactionBehavior::IMMEDIATE);
+  SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
   for (const StoreRequest& request : requests) {
     StoreReport report{request.worker, request.sequence, {}};
     for (std::size_t i = 0; i < request.rows.size(); ++i) {
       report.rows.emplace_back(request.rows[i].row.key,
-                               parts_->insert(request.rows[i], request, request.attempts[i]));
+                               insert(request.rows[i], request, request.attempts[i]));
     }
     reports.push_back(std::move(report));
   }
   transaction.commit();
   return reports;
+}
+
+std::vector<StoreReport> CampaignStore::commit(std::span<const StoreRequest> requests) {
+  try {
+    if (parts_->rolled_back) parts_->prepare();
+    return parts_->commit(requests);
+  } catch (const SQLite::Exception& e) {
+    parts_->rolled_back = true;
+    if (!is_passing(e)) throw;
+    throw StorageTrouble(e.what());
+  }
 }
 
 }  // namespace fatmc

@@ -17,9 +17,9 @@ double f_quantile_2_2q(double p, double q) {
   return q * std::expm1(-std::log1p(-p) / q);
 }
 
-double f_quantile(double p, double m, double n) {
-  FATMC_CHECK(p > 0.0 && p < 1.0 && m > 0.0 && n > 0.0, "a probability and degrees of freedom");
-  return boost::math::quantile(boost::math::fisher_f(m, n), p);
+double f_quantile(double p, double d1, double d2) {
+  FATMC_CHECK(p > 0.0 && p < 1.0 && d1 > 0.0 && d2 > 0.0, "a probability and degrees of freedom");
+  return boost::math::quantile(boost::math::fisher_f(d1, d2), p);
 }
 
 double confidence_radius(double variance, double p, double q) {
