@@ -35,6 +35,7 @@ void add_query_command(CLI::App& app, Exit& exit);
 void add_digest_command(CLI::App& app, Exit& exit);
 void add_tables_command(CLI::App& app, Exit& exit);
 void add_ssv_command(CLI::App& app, Exit& exit);
+void add_monitor_command(CLI::App& app, Exit& exit);
 void add_identify_command(CLI::App& app, Exit& exit);
 void add_stability_command(CLI::App& app, Exit& exit);
 
