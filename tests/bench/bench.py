@@ -30,6 +30,8 @@ GOOGLE = {
     "ssv_us_warm": ("bench_robust", "ssv_us_(cold|warm|slicot)$", "us", "ssv_us_slicot", False, "the same"),
     "epoch_ms": ("bench_stability", "epoch_ms", "ms", 1040.0, False,
                  "thesis, section 5.8.1: LPM 0.04 s, mu-analysis about 1 s; bar 2.5 ms"),
+    "monitor_epochs_per_s": ("bench_stability", "monitor_epochs_per_s", "1/s", 1.0, True,
+                             "thesis: about 1; bar 500, ten times the sample rate"),
     "acked_per_s": ("bench_engine", "AckedTrials/100000/2", "1/s", None, True, ""),
     "coordinator_us_per_trial": ("bench_engine", "AckedTrials/100000/2", "us", None, False, ""),
 }
