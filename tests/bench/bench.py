@@ -32,6 +32,8 @@ GOOGLE = {
                  "thesis, section 5.8.1: LPM 0.04 s, mu-analysis about 1 s; bar 2.5 ms"),
     **{f"{name}_line_us": ("bench_estimators", ".*_line_us", "us", None, False, "")
        for name in ("etfe", "tlpm", "robust", "lrm", "arbitrary", "joint", "welch")},
+    "monitor_epochs_per_s": ("bench_stability", "monitor_epochs_per_s", "1/s", 1.0, True,
+                             "thesis: about 1; bar 500, ten times the sample rate"),
     "acked_per_s": ("bench_engine", "AckedTrials/100000/2", "1/s", None, True, ""),
     "coordinator_us_per_trial": ("bench_engine", "AckedTrials/100000/2", "us", None, False, ""),
 }
