@@ -17,9 +17,10 @@ struct SpecChanges {
   std::optional<std::int64_t> trials;  ///< repetitions of every cell
   std::optional<double> scale;         ///< multiplies repetitions, after `trials`
   std::optional<std::int64_t> seed;
+  std::string size;  ///< of the spec's [size.NAME]; empty: as the spec stands
 };
 
-/// Adds --trials, --scale and --seed.
+/// Adds --trials, --scale, --seed and --size.
 void add_spec_options(CLI::App& command, SpecChanges& changes);
 
 /// The same as words of a command line.

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "campaigns/registry_summaries.h"
+#include "coordinator/cli/campaign_watch.h"
 #include "coordinator/cli/database_use.h"
 #include "coordinator/cli/progress_line.h"
 #include "coordinator/report/tables.h"
@@ -20,6 +21,7 @@
 #include "coordinator/server/local_workers.h"
 #include "coordinator/state/campaign_state.h"
 #include "coordinator/store/campaign_store.h"
+#include "core/base/text.h"
 #include "proto/build_hash.h"
 
 namespace fatmc::cli {
@@ -45,6 +47,29 @@ void write_last(const std::string& database) {
   }
 }
 
+// How each cell ended where [stop] says when it is precise enough.
+void print_stops(const CampaignReader& reader) {
+  const CampaignSpec& spec = reader.spec();
+  if (!spec.precision || !spec.precision->half_width) return;
+  std::map<std::uint32_t, StopDecision> stops;
+  for (const StopDecision& stop : reader.control().stops()) stops.emplace(stop.cell, stop);
+  for (std::uint32_t cell = 0; cell < spec.cells.size(); ++cell) {
+    const auto stop = stops.find(cell);
+    if (stop == stops.end()) {
+      std::printf("%s: %s is not known to within %s after all %llu trials; give the cell more\n",
+                  spec.cells[cell].name.c_str(), spec.precision->metric.c_str(),
+                  significant(*spec.precision->half_width, 3).c_str(),
+                  static_cast<unsigned long long>(spec.cells[cell].repetitions));
+      continue;
+    }
+    const StopDecision& d = stop->second;
+    std::printf("%s: precise enough after %llu trials, %s %s in [%s, %s] at %s %%\n",
+                spec.cells[cell].name.c_str(), static_cast<unsigned long long>(d.repetitions),
+                d.metric.c_str(), significant(d.mean, 4).c_str(), significant(d.low, 4).c_str(),
+                significant(d.high, 4).c_str(), significant(100.0 * d.level, 4).c_str());
+  }
+}
+
 void print_outcomes(const CampaignReader& reader, const std::string& database) {
   std::map<std::string, std::uint64_t> counts;
   std::uint64_t stored = 0;
@@ -65,6 +90,7 @@ Exit print_summary(const std::string& database) {
   Result<CampaignReader> reader = CampaignReader::open(database);
   if (!reader) return report(reader.error());
   print_outcomes(*reader, database);
+  print_stops(*reader);
   const SummaryStudy* study = find_summary_study(reader->spec().study);
   if (study == nullptr) return Exit::done;
   const auto tables = study->tables(reader->spec(), reader->rows());
@@ -140,6 +166,7 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
                                      std::chrono::system_clock::now().time_since_epoch())
                                      .count());
   CampaignState state(store.plan(spec), Welcome{spec.identity(), spec.tree, 0}, build_hash(), state_options);
+  CampaignWatch watch(spec, options.database, state, store);
   if (state.finished()) {
     write_last(options.database);
     return std::nullopt;
@@ -157,23 +184,28 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
       static_cast<unsigned>(std::min<std::uint64_t>(options.workers, state.planned() - state.stored()));
   worker_options.verbose = options.verbose;
   LocalWorkers workers(worker_options);
-  ProgressLine progress(state.planned());
-  progress.show(state.stored());
+  ProgressLine progress;
+  progress.show(watch.progress());
   workers.start();
   ServerHooks hooks;
   bool last_is_written = false;
   hooks.on_tick = [&] {
-    progress.show(state.stored());
+    watch.on_tick(server);
+    progress.show(watch.progress());
     if (last_is_written || state.stored() == 0) return;
     last_is_written = true;
     write_last(options.database);
+  };
+  hooks.on_committed = [&](const StoreRequest& request, const StoreReport& report) {
+    watch.on_committed(request, report, server);
   };
   hooks.on_child = [&] {
     for (const std::uint32_t pid : workers.reap(state.stored())) server.on_process_ended(pid);
   };
   hooks.failure = [&] { return workers.failure(); };
   const ServerEnd end = server.run(hooks);
-  progress.finish(state.stored());
+  progress.finish(watch.progress());
+  watch.on_end(end == ServerEnd::failed);
   if (!last_is_written && state.stored() > 0) write_last(options.database);
   workers.stop(kByePatience);
   report_counters(state, server.malformed());

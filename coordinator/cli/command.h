@@ -30,6 +30,11 @@ void add_status_command(CLI::App& app, Exit& exit);
 void add_query_command(CLI::App& app, Exit& exit);
 void add_digest_command(CLI::App& app, Exit& exit);
 void add_tables_command(CLI::App& app, Exit& exit);
+void add_replay_command(CLI::App& app, Exit& exit);
+void add_pause_command(CLI::App& app, Exit& exit);
+void add_resume_command(CLI::App& app, Exit& exit);
+void add_extend_command(CLI::App& app, Exit& exit);
+void add_explain_command(CLI::App& app, Exit& exit);
 void add_ssv_command(CLI::App& app, Exit& exit);
 void add_stability_command(CLI::App& app, Exit& exit);
 

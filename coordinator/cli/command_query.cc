@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "coordinator/cli/command.h"
+#include "coordinator/cli/command_sensitivity.h"
 #include "coordinator/cli/database_use.h"
 #include "coordinator/store/campaign_store.h"
 #include "coordinator/store/database_error.h"
@@ -154,16 +155,25 @@ void add_query_command(CLI::App& app, Exit& exit) {
       "Example: fatmc query results/coverage.db --view failures\n"
       "    and: fatmc query results/coverage.db --format csv --sql \"SELECT name, avg(value) FROM metrics "
       "GROUP BY 1\"");
-  command->add_option("DB", options->path, "database")->required();
+  command->add_option("DB", options->path, "database");
   auto* view = command->add_option("--view", options->view, "what to show")
-                   ->check(CLI::IsMember({"cells", "trials", "outcomes", "failures", "metrics", "arrays"}))
+                   ->check(CLI::IsMember({"cells", "trials", "outcomes", "failures", "metrics", "arrays",
+                                          "provenance", "stops"}))
                    ->capture_default_str();
   command->add_option("--sql", options->sql, "a SELECT of your own")->excludes(view);
   command->add_option("--format", options->format, "layout")
       ->check(CLI::IsMember({"table", "csv", "json"}))
       ->capture_default_str();
-  command->callback(
-      [options, &exit] { exit = use_database(options->path, [&] { return query(*options); }); });
+  command->require_subcommand(0, 1);
+  add_sensitivity_command(*command, exit);
+  command->callback([command, options, &exit] {
+    if (!command->get_subcommands().empty()) return;
+    if (options->path.empty()) {
+      exit = report(Error{"", 0, "DB", "is missing, write the database (fatmc query --help)"});
+      return;
+    }
+    exit = use_database(options->path, [&] { return query(*options); });
+  });
 }
 
 }  // namespace fatmc::cli

@@ -5,6 +5,8 @@
 #include "coordinator/cli/campaign_input.h"
 #include "coordinator/cli/campaign_session.h"
 #include "coordinator/cli/command.h"
+#include "coordinator/cli/database_use.h"
+#include "coordinator/cli/plan_listing.h"
 
 namespace fatmc::cli {
 namespace {
@@ -15,6 +17,7 @@ struct RunOptions {
   unsigned workers = std::max(1U, std::thread::hardware_concurrency());
   SpecChanges changes;
   bool verbose = false;
+  bool dry_run = false;
 };
 
 std::string resume_command(const RunOptions& options, const std::string& database) {
@@ -27,8 +30,14 @@ std::string resume_command(const RunOptions& options, const std::string& databas
 Exit run(const RunOptions& options) {
   const Result<CampaignSpec> spec = read_campaign(options.spec, options.changes);
   if (!spec) return report(spec.error());
+  const std::string database = options.database.empty() ? default_database(*spec) : options.database;
+  if (options.dry_run)
+    return use_database(database, [&] {
+      print_plan(*spec, database);
+      return Exit::done;
+    });
   SessionOptions session;
-  session.database = options.database.empty() ? default_database(*spec) : options.database;
+  session.database = database;
   session.workers = options.workers;
   session.verbose = options.verbose;
   session.resume_command = resume_command(options, session.database);
@@ -50,6 +59,7 @@ void add_run_command(CLI::App& app, Exit& exit) {
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
   add_spec_options(*command, options->changes);
+  command->add_flag("--dry-run", options->dry_run, "list cells and dispersions, run nothing");
   command->add_flag("--verbose", options->verbose, "log messages to standard error");
   command->callback([options, &exit] { exit = run(*options); });
 }

@@ -116,7 +116,24 @@ void CampaignServer::commit() {
   std::vector<StoreRequest> batch;
   batch.swap(parts.batch);
   parts.batch_rows = 0;
-  for (const StoreReport& report : store_.commit(batch)) state_.on_stored(report, now(), *this);
+  for (StoreRequest& request : batch) state_.drop_out_of_plan(request);
+  const std::vector<StoreReport> reports = store_.commit(batch);
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    state_.on_stored(reports[i], now(), *this);
+    if (hooks_ != nullptr && hooks_->on_committed) hooks_->on_committed(batch[i], reports[i]);
+  }
+}
+
+void CampaignServer::set_repetitions(std::uint32_t cell, std::uint64_t repetitions) {
+  state_.set_repetitions(cell, repetitions, now(), *this);
+}
+
+void CampaignServer::set_paused(bool paused) {
+  if (paused) {
+    state_.pause();
+  } else {
+    state_.resume(now(), *this);
+  }
 }
 
 void CampaignServer::receive() {
@@ -157,6 +174,7 @@ std::chrono::milliseconds CampaignServer::wait_time() const {
 }
 
 ServerEnd CampaignServer::run(const ServerHooks& hooks) {
+  hooks_ = &hooks;
   zmq::pollitem_t items[] = {{parts_->socket.handle(), 0, ZMQ_POLLIN, 0},
                              {nullptr, parts_->signals, ZMQ_POLLIN, 0}};
   MonotonicTime last_tick = now();
@@ -189,6 +207,7 @@ ServerEnd CampaignServer::run(const ServerHooks& hooks) {
     }
   }
   commit();
+  hooks_ = nullptr;
   if (state_.finished()) end = ServerEnd::finished;
   say_bye(end == ServerEnd::finished);
   return end;

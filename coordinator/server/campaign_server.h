@@ -27,6 +27,8 @@ struct ServerOptions {
 /// What happens beside the socket. Each is called on the server's thread and may be empty.
 struct ServerHooks {
   std::function<void()> on_tick;
+  /// After each commit, for every request of it: what came and what became of it.
+  std::function<void(const StoreRequest&, const StoreReport&)> on_committed;
   /// A child of this process has ended (SIGCHLD).
   std::function<void()> on_child;
   /// A reason to give up, or an empty string.
@@ -63,6 +65,9 @@ class CampaignServer : private Outbox {
   /// Serves until all is stored, a signal comes, or a hook reports a failure; then says BYE to all workers.
   /// Throws when the database fails.
   ServerEnd run(const ServerHooks& hooks);
+  /// CampaignState::set_repetitions, pause and resume, from inside a hook.
+  void set_repetitions(std::uint32_t cell, std::uint64_t repetitions);
+  void set_paused(bool paused);
   /// A process of this host has ended.
   void on_process_ended(std::uint32_t pid);
   /// Messages that could not be read.
@@ -81,6 +86,7 @@ class CampaignServer : private Outbox {
   CampaignState& state_;
   CampaignStore& store_;
   std::unique_ptr<Parts> parts_;
+  const ServerHooks* hooks_ = nullptr;  // of run()
   std::uint64_t malformed_ = 0;
 };
 

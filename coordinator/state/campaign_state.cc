@@ -18,6 +18,7 @@ CampaignState::CampaignState(std::vector<PlanCell> plan, Welcome welcome, std::s
   for (PlanCell& cell : plan) {
     CellState state;
     state.repetitions = cell.repetitions;
+    state.priority = cell.priority;
     state.stored = std::move(cell.stored);
     state.stored.erase(cell.repetitions, UINT64_MAX);  // more than the plan asks for
     state.pending.insert(0, cell.repetitions);
@@ -99,9 +100,9 @@ void CampaignState::on_credit(const WorkerId& worker, const Credit& credit, Mono
 }
 
 bool CampaignState::grant(const WorkerId& worker, WorkerState& state, MonotonicTime now, Outbox& out) {
-  const auto cell =
-      std::find_if(cells_.begin(), cells_.end(), [](const CellState& c) { return !c.pending.empty(); });
-  if (cell == cells_.end()) return false;
+  const std::uint32_t index = next_cell();
+  if (paused_ || index == cells_.size()) return false;
+  CellState* const cell = &cells_[index];
   const double prefetch_ns = std::chrono::duration<double, std::nano>(options_.prefetch_below).count();
   if (state.idle == 0 && !(cell->timed > 0 && cell->mean_trial_ns < prefetch_ns)) return false;
   const auto [first, last] = cell->pending.take(lease_size(state, *cell));
@@ -109,9 +110,9 @@ bool CampaignState::grant(const WorkerId& worker, WorkerState& state, MonotonicT
   const std::uint64_t id = next_lease_++;
   LeaseState& lease = leases_[id];
   lease.worker = worker;
-  lease.cell = static_cast<std::uint32_t>(cell - cells_.begin());
+  lease.cell = index;
   lease.missing.insert(first, last);
-  lease.last_mentioned = now;
+  lease.since = lease.last_mentioned = now;
   state.newest_lease = id;
   state.waiting = false;
   out.send(worker, Lease{id, lease.cell, first, last});
@@ -211,7 +212,8 @@ void CampaignState::on_stored(const StoreReport& report, MonotonicTime, Outbox& 
       cell.received.erase(key.repetition);
       --received_;
     }
-    if (!cell.stored.contains(key.repetition)) {
+    // A cell may have been cut short between the receipt and the commit.
+    if (key.repetition < cell.repetitions && !cell.stored.contains(key.repetition)) {
       cell.stored.insert(key.repetition);
       ++stored_;
     }

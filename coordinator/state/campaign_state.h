@@ -30,7 +30,19 @@ using MonotonicTime = std::chrono::nanoseconds;  ///< since any fixed moment
 
 struct PlanCell {
   std::uint64_t repetitions = 0;
-  IndexRanges stored;  ///< what the database has already
+  IndexRanges stored;         ///< what the database has already
+  std::int64_t priority = 0;  ///< cells of a higher one go first; equals go in their order
+};
+
+/// A lease that is out, for those who ask where a trial is.
+struct LeaseView {
+  std::uint32_t cell = 0;
+  std::uint64_t first = 0, last = 0;  ///< the span of its trials that have not come back, [first, last)
+  std::uint64_t missing = 0;          ///< how many they are
+  std::uint32_t attempts = 0;         ///< the most that any of them was leased, this lease included
+  std::string host;
+  std::uint32_t pid = 0;
+  MonotonicTime since{};
 };
 
 struct StateOptions {
@@ -97,6 +109,19 @@ class CampaignState {
   /// Time passes: takes back what is overdue. To be called once a heartbeat or more often.
   void on_tick(MonotonicTime now, Outbox& out);
 
+  /// Plans another number of repetitions of a cell. More: they are pending. Fewer: those beyond are planned
+  /// no more, whatever became of them; rows of them that still come are acknowledged and dropped.
+  void set_repetitions(std::uint32_t cell, std::uint64_t repetitions, MonotonicTime now, Outbox& out);
+  [[nodiscard]] std::uint64_t repetitions(std::uint32_t cell) const { return cells_.at(cell).repetitions; }
+  /// Takes rows out that are planned no more since they were received; what is left may be stored.
+  void drop_out_of_plan(StoreRequest& request);
+  /// Nothing is leased while paused; what is out may come back and is stored.
+  void pause() { paused_ = true; }
+  void resume(MonotonicTime now, Outbox& out);
+  [[nodiscard]] bool paused() const { return paused_; }
+  /// Leases that have been out for `age` or longer, oldest first.
+  [[nodiscard]] std::vector<LeaseView> leases(MonotonicTime now, std::chrono::milliseconds age) const;
+
   [[nodiscard]] bool finished() const { return stored_ == planned_; }
   [[nodiscard]] std::uint64_t planned() const { return planned_; }
   [[nodiscard]] std::uint64_t stored() const { return stored_; }
@@ -112,6 +137,7 @@ class CampaignState {
  private:
   struct CellState {
     std::uint64_t repetitions = 0;
+    std::int64_t priority = 0;
     IndexRanges pending, received, stored;
     std::map<std::uint64_t, std::uint32_t> retries;  ///< of trials that were leased more than once
     double mean_trial_ns = 0.0;
@@ -128,6 +154,7 @@ class CampaignState {
     WorkerId worker;
     std::uint32_t cell = 0;
     IndexRanges missing;
+    MonotonicTime since{};
     MonotonicTime last_mentioned{};
   };
 
@@ -139,6 +166,7 @@ class CampaignState {
   void measure(CellState& cell, std::uint64_t duration_ns);
   void reclaim(std::uint64_t lease);
   void forget(const WorkerId& worker);
+  [[nodiscard]] std::uint32_t next_cell() const;
   bool grant(const WorkerId& worker, WorkerState& state, MonotonicTime now, Outbox& out);
   void serve_waiting(MonotonicTime now, Outbox& out);
   [[nodiscard]] std::uint64_t lease_size(const WorkerState& worker, const CellState& cell) const;
@@ -150,6 +178,7 @@ class CampaignState {
   std::string build_;
   StateOptions options_;
   std::uint64_t next_lease_;
+  bool paused_ = false;
   std::uint64_t planned_ = 0, stored_ = 0, received_ = 0, pending_ = 0;
   StateCounters counters_;
   std::string last_refusal_;

@@ -122,18 +122,20 @@ std::optional<Throughput> CampaignReader::throughput() const {
   return Throughput{trials, static_cast<double>(trials - 1) / span, last.getColumn(2).getString()};
 }
 
-void CampaignReader::visit(std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor) const {
+void CampaignReader::visit(std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor,
+                           RowSelection rows) const {
   SQLite::Database& db = *parts_->db;
   SQLite::Savepoint snapshot(db, "visit");  // several statements, one state of the database; visits may nest
   const auto names = read_names(db);
-  const std::string range = " BETWEEN " + std::to_string(trial_id({cell, 0})) + " AND " +
-                            std::to_string(trial_id({cell + 1, 0}) - 1) + " ORDER BY ";
+  const std::string range = " BETWEEN " + std::to_string(trial_id({cell, rows.first})) + " AND " +
+                            std::to_string(trial_id({cell, 0}) + static_cast<std::int64_t>(rows.last) - 1) +
+                            " ORDER BY ";
   SQLite::Statement trials(db, "SELECT id, repetition, outcome, detail FROM trial WHERE id" + range + "id");
   SQLite::Statement metrics(db,
                             "SELECT trial, name, value FROM metric WHERE trial" + range + "trial, position");
   SQLite::Statement arrays(db, "SELECT trial, name, data FROM array WHERE trial" + range + "trial, position");
   bool more_metrics = metrics.executeStep();
-  bool more_arrays = arrays.executeStep();
+  bool more_arrays = rows.arrays && arrays.executeStep();
   while (trials.executeStep()) {
     TrialRow row;
     row.key = {cell, static_cast<std::uint64_t>(trials.getColumn(1).getInt64())};
@@ -151,6 +153,26 @@ void CampaignReader::visit(std::uint32_t cell, const std::function<void(const Tr
   for (SQLite::Statement* statement : {&trials, &metrics, &arrays}) statement->reset();
   snapshot.release();
 }
+
+std::optional<StoredTrial> CampaignReader::trial(TrialKey key) const {
+  SQLite::Statement own(*parts_->db,
+                        "SELECT lower(hex(content_hash)), host, pid, attempts, "
+                        "strftime('%Y-%m-%dT%H:%M:%fZ', started_us / 1e6, 'unixepoch'), duration_ns / 1e9 "
+                        "FROM trial WHERE id = ?");
+  own.bind(1, trial_id(key));
+  if (!own.executeStep()) return std::nullopt;
+  StoredTrial out;
+  out.content_hash = own.getColumn(0).getString();
+  out.host = own.getColumn(1).getString();
+  out.pid = static_cast<std::uint32_t>(own.getColumn(2).getInt64());
+  out.attempts = static_cast<std::uint32_t>(own.getColumn(3).getInt64());
+  out.started = own.getColumn(4).getString();
+  out.duration_s = own.getColumn(5).getDouble();
+  visit(key.cell, [&](const TrialRow& row) { out.row = row; }, {key.repetition, key.repetition + 1, true});
+  return out;
+}
+
+ControlTables CampaignReader::control() const { return ControlTables(*parts_->db); }
 
 RowSource CampaignReader::rows() const {
   return [this](std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor) {

@@ -94,13 +94,14 @@ Status check_same(const std::string& path, const StoredCampaign& stored, const C
   return {};
 }
 
-// The figures to compare with are no part of the identity and may be corrected at any time: the run that
-// resumes decides.
-void renew_published(SQLite::Database& db, const StoredCampaign& stored, const CampaignSpec& spec) {
+// The figures to compare with and the precision wanted are no part of the identity and may be changed at any
+// time: the run that resumes decides.
+void renew_what_may_change(SQLite::Database& db, const StoredCampaign& stored, const CampaignSpec& spec) {
   Tree tree = stored.spec.tree;
-  std::erase_if(std::get<Tree::Table>(tree.value).entries,
-                [](const auto& entry) { return entry.first == "published"; });
-  if (const Tree* published = spec.tree.find("published")) tree.set("published", *published);
+  for (const char* key : {"published", "stop", "watch"}) {
+    tree.erase(key);
+    if (const Tree* own = spec.tree.find(key)) tree.set(key, *own);
+  }
   if (canonical_text(tree) == canonical_text(stored.spec.tree)) return;
   const std::string frame = encode(Welcome{stored.identity, tree, kHeartbeatMs});
   SQLite::Statement campaign(db, "UPDATE campaign SET spec_canonical = ?, spec = ?");
@@ -111,7 +112,7 @@ void renew_published(SQLite::Database& db, const StoredCampaign& stored, const C
 
 void resume(SQLite::Database& db, const StoredCampaign& stored, const CampaignSpec& spec) {
   SQLite::Transaction transaction(db);
-  renew_published(db, stored, spec);
+  renew_what_may_change(db, stored, spec);
   SQLite::Statement cell(db, "UPDATE cell SET repetitions = max(repetitions, ?) WHERE name = ?");
   for (const Cell& planned : spec.cells) {
     cell.bind(1, static_cast<std::int64_t>(planned.repetitions));
@@ -263,10 +264,10 @@ Result<CampaignStore> CampaignStore::open(WriterLock held, const std::string& pa
     auto parts = std::make_unique<Parts>(std::move(held), path);
     parts->db.exec("PRAGMA journal_mode = WAL");
     parts->db.exec("PRAGMA synchronous = FULL");
+    if (!stored) create(parts->db, spec, build);
+    ControlTables(parts->db).create();
     if (stored) {
       resume(parts->db, *stored, spec);
-    } else {
-      create(parts->db, spec, build);
     }
     parts->prepare();
     return CampaignStore(std::move(parts));
@@ -278,7 +279,7 @@ Result<CampaignStore> CampaignStore::open(WriterLock held, const std::string& pa
 
 std::vector<PlanCell> CampaignStore::plan(const CampaignSpec& spec) {
   std::vector<PlanCell> plan;
-  for (const Cell& cell : spec.cells) plan.push_back({cell.repetitions, {}});
+  for (const Cell& cell : spec.cells) plan.push_back({cell.repetitions, {}, cell.priority});
   SQLite::Statement keys(parts_->db, "SELECT cell, repetition FROM trial ORDER BY id");
   PlanCell* cell = nullptr;
   std::uint64_t first = 0, last = 0;
@@ -313,5 +314,7 @@ std::vector<StoreReport> CampaignStore::commit(std::span<const StoreRequest> req
   transaction.commit();
   return reports;
 }
+
+ControlTables CampaignStore::control() { return ControlTables(parts_->db); }
 
 }  // namespace fatmc

@@ -16,6 +16,7 @@
 #include "campaigns/base/campaign_spec.h"
 #include "campaigns/base/study.h"
 #include "coordinator/state/campaign_state.h"
+#include "coordinator/store/control_tables.h"
 #include "coordinator/store/writer_lock.h"
 #include "core/base/error.h"
 
@@ -48,6 +49,9 @@ class CampaignStore {
   /// when its content hash is the same, else `conflict`.
   std::vector<StoreReport> commit(std::span<const StoreRequest> requests);
 
+  /// What commands beside the coordinator want, and what it tells them. Not beyond the store's life.
+  [[nodiscard]] ControlTables control();
+
  private:
   struct Parts;
   explicit CampaignStore(std::unique_ptr<Parts> parts);
@@ -72,6 +76,21 @@ struct Throughput {
   std::string until;  ///< UTC
 };
 
+struct RowSelection {
+  std::uint64_t first = 0, last = std::uint64_t{1} << 40;
+  bool arrays = true;
+};
+
+struct StoredTrial {
+  TrialRow row;
+  std::string content_hash;  ///< hexadecimal
+  std::string host;
+  std::uint32_t pid = 0;
+  std::uint32_t attempts = 0;
+  std::string started;  ///< UTC
+  double duration_s = 0.0;
+};
+
 /// Reads a campaign's rows, also while another process writes them.
 class CampaignReader {
  public:
@@ -90,8 +109,13 @@ class CampaignReader {
   /// Over the trials that ended in the last 60 s before the last one, so that pauses between runs do not
   /// count; none when they are fewer than two.
   [[nodiscard]] std::optional<Throughput> throughput() const;
-  /// Rows of a cell in the order of repetitions.
-  void visit(std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor) const;
+  /// Rows of a cell in the order of repetitions: all of them, or those of [first, last), with or without
+  /// arrays.
+  void visit(std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor,
+             RowSelection rows = {}) const;
+  /// One row, with how it came about; none where it is not stored.
+  [[nodiscard]] std::optional<StoredTrial> trial(TrialKey key) const;
+  [[nodiscard]] ControlTables control() const;
   /// For SummaryStudy; the reader must outlive it.
   [[nodiscard]] RowSource rows() const;
   /// SHA-256 over all results in the order of their keys: the same whoever computed them, and when.

@@ -78,4 +78,42 @@ CREATE VIEW failures AS
   FROM trial t JOIN cell ON cell.id = t.cell WHERE t.outcome <> 'ok' ORDER BY t.id;
 )sql";
 
+const char* const kControlSql = R"sql(
+CREATE TABLE IF NOT EXISTS control (
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  paused INTEGER NOT NULL
+) STRICT;
+CREATE TABLE IF NOT EXISTS stop (
+  cell INTEGER PRIMARY KEY REFERENCES cell (id),
+  repetitions INTEGER NOT NULL,
+  metric TEXT NOT NULL,
+  level REAL NOT NULL,
+  mean REAL NOT NULL,
+  low REAL NOT NULL,
+  high REAL NOT NULL
+) STRICT;
+CREATE TABLE IF NOT EXISTS in_flight (
+  cell INTEGER NOT NULL REFERENCES cell (id),
+  first INTEGER NOT NULL,
+  last INTEGER NOT NULL,
+  missing INTEGER NOT NULL,
+  attempts INTEGER NOT NULL,
+  host TEXT NOT NULL,
+  pid INTEGER NOT NULL,
+  held_s REAL NOT NULL,
+  reported TEXT NOT NULL
+) STRICT;
+CREATE VIEW IF NOT EXISTS stops AS
+  SELECT cell.name AS cell, s.repetitions, s.metric, s.level, s.mean, s.low, s.high
+  FROM stop s JOIN cell ON cell.id = s.cell ORDER BY s.cell;
+CREATE VIEW IF NOT EXISTS provenance AS
+  SELECT cell.name AS cell, t.repetition, campaign.seed, campaign.build, t.attempts, t.host, t.pid,
+         strftime('%Y-%m-%dT%H:%M:%fZ', t.started_us / 1e6, 'unixepoch') AS started,
+         strftime('%Y-%m-%dT%H:%M:%fZ', t.started_us / 1e6 + t.duration_ns / 1e9, 'unixepoch') AS finished,
+         lower(hex(t.content_hash)) AS content_hash,
+         (SELECT json_group_object(substr(name.text, 6), m.value) FROM metric m JOIN name ON name.id = m.name
+          WHERE m.trial = t.id AND name.text GLOB 'draw.*' AND typeof(m.value) <> 'blob') AS drawn
+  FROM trial t JOIN cell ON cell.id = t.cell, campaign ORDER BY t.id;
+)sql";
+
 }  // namespace fatmc
