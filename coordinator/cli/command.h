@@ -29,6 +29,7 @@ void add_coordinator_command(CLI::App& app, Exit& exit);
 void add_status_command(CLI::App& app, Exit& exit);
 void add_query_command(CLI::App& app, Exit& exit);
 void add_digest_command(CLI::App& app, Exit& exit);
+void add_migrate_command(CLI::App& app, Exit& exit);
 void add_tables_command(CLI::App& app, Exit& exit);
 void add_ssv_command(CLI::App& app, Exit& exit);
 void add_stability_command(CLI::App& app, Exit& exit);
