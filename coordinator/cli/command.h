@@ -26,6 +26,7 @@ void add_simulate_command(CLI::App& app, Exit& exit);
 void add_estimate_command(CLI::App& app, Exit& exit);
 void add_run_command(CLI::App& app, Exit& exit);
 void add_coordinator_command(CLI::App& app, Exit& exit);
+void add_keygen_command(CLI::App& app, Exit& exit);
 void add_status_command(CLI::App& app, Exit& exit);
 void add_query_command(CLI::App& app, Exit& exit);
 void add_digest_command(CLI::App& app, Exit& exit);

@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
   fatmc::cli::Exit exit = fatmc::cli::Exit::done;
   fatmc::cli::add_run_command(app, exit);
   fatmc::cli::add_coordinator_command(app, exit);
+  fatmc::cli::add_keygen_command(app, exit);
   fatmc::cli::add_status_command(app, exit);
   fatmc::cli::add_query_command(app, exit);
   fatmc::cli::add_digest_command(app, exit);
