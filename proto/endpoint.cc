@@ -26,19 +26,19 @@ bool is_loopback(std::string_view host) {
 
 }  // namespace
 
-Status check_plain_endpoint(const std::string& endpoint, const std::string& option) {
+Status check_endpoint(const std::string& endpoint, const std::string& option, Protection protection) {
   const std::string_view text = endpoint;
   if (text.starts_with("ipc://") && text.size() > 6) return {};
   const std::size_t colon = text.rfind(':');
-  if (!text.starts_with("tcp://") || colon < 6 ||
+  if (!text.starts_with("tcp://") || colon < 7 ||
       !(text.substr(colon + 1) == "*" || is_number(text.substr(colon + 1), 65535))) {
     return fail(Error{"", 0, option, "\"" + endpoint + "\" is no endpoint, write tcp://127.0.0.1:PORT"});
   }
-  if (!is_loopback(text.substr(6, colon - 6))) {
+  if (protection == Protection::plain && !is_loopback(text.substr(6, colon - 6))) {
     return fail(Error{"", 0, option,
                       "\"" + endpoint +
-                          "\" is not on the loopback, where alone plain TCP is allowed; write "
-                          "tcp://127.0.0.1:PORT (and reach it from elsewhere through an SSH tunnel)"});
+                          "\" is not on the loopback, where alone plain TCP is allowed; make keys by "
+                          "`fatmc keygen DIR` and add --keys DIR, or write tcp://127.0.0.1:PORT"});
   }
   return {};
 }

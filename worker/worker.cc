@@ -101,6 +101,12 @@ Worker::Worker(const WorkerOptions& options)
   socket_.set(zmq::sockopt::reconnect_ivl, 50);
   socket_.set(zmq::sockopt::reconnect_ivl_max, 1000);
   socket_.set(zmq::sockopt::ipv6, options.endpoint.find('[') != std::string::npos);
+  if (options.keys) {
+    const auto bytes = [](const CurveKey& key) { return zmq::buffer(key.data(), key.size()); };
+    socket_.set(zmq::sockopt::curve_publickey, bytes(options.keys->own.open));
+    socket_.set(zmq::sockopt::curve_secretkey, bytes(options.keys->own.secret));
+    socket_.set(zmq::sockopt::curve_serverkey, bytes(options.keys->coordinator));
+  }
   socket_.connect(options.endpoint);
 }
 

@@ -8,10 +8,14 @@
 #include <optional>
 #include <string>
 
+#include "proto/curve_keys.h"
+
 namespace fatmc {
 
 struct WorkerOptions {
   std::string endpoint;
+  /// Without keys the socket is plain, for the loopback alone.
+  std::optional<WorkerKeys> keys;
   unsigned jobs = 1;
   /// Ends the worker when nothing was heard from a coordinator for so long, and when one says BYE; without,
   /// it keeps trying for ever, unless the campaign is finished.

@@ -23,6 +23,7 @@
 #include "coordinator/store/campaign_store.h"
 #include "core/base/text.h"
 #include "proto/build_hash.h"
+#include "proto/key_files.h"
 
 namespace fatmc::cli {
 namespace {
@@ -139,6 +140,7 @@ void report_counters(const CampaignState& state, std::uint64_t malformed) {
 // taken from whoever has it, so that only the holder of the lock may bind.
 struct Place {
   std::string worker_program;
+  std::optional<WorkerKeys> worker_keys;
   WriterLock lock;
   BoundSocket socket;
 };
@@ -150,16 +152,27 @@ Result<Place> take_place(const SessionOptions& options) {
     if (!found) return fail(found.error());
     program = std::move(*found);
   }
+  std::optional<CoordinatorKeys> keys;
+  std::optional<WorkerKeys> worker_keys;
+  if (!options.keys.empty()) {
+    const Result<CoordinatorKeys> found = read_coordinator_keys(options.keys);
+    if (!found) return fail(found.error());
+    keys = *found;
+  } else if (options.workers > 0) {
+    const RunKeys made = make_run_keys();
+    keys = made.coordinator;
+    worker_keys = made.worker;
+  }
   Result<WriterLock> lock = CampaignStore::lock(options.database);
   if (!lock) return fail(lock.error());
-  Result<BoundSocket> socket = BoundSocket::bind(options.endpoint);
+  Result<BoundSocket> socket = BoundSocket::bind(options.endpoint, keys);
   if (!socket) return fail(socket.error());
-  return Place{std::move(program), std::move(*lock), std::move(*socket)};
+  return Place{std::move(program), std::move(worker_keys), std::move(*lock), std::move(*socket)};
 }
 
 // The serving part; returns nothing when all is stored.
-std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& options,
-                          const std::string& worker_program, BoundSocket socket, CampaignStore& store) {
+std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& options, Place place,
+                          CampaignStore& store) {
   StateOptions state_options;
   state_options.first_lease =
       static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(
@@ -171,14 +184,16 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
     write_last(options.database);
     return std::nullopt;
   }
-  const std::string endpoint = socket.endpoint();
-  CampaignServer server(std::move(socket), {}, state, store);
+  const std::string endpoint = place.socket.endpoint();
+  CampaignServer server(std::move(place.socket), {}, state, store);
   if (options.workers == 0) {
-    std::fprintf(stderr, "fatmc: %llu trials to do; start workers by: fatmc-worker --connect %s\n",
-                 static_cast<unsigned long long>(state.planned() - state.stored()), endpoint.c_str());
+    std::fprintf(stderr, "fatmc: %llu trials to do; start workers by: fatmc-worker --connect %s%s\n",
+                 static_cast<unsigned long long>(state.planned() - state.stored()), endpoint.c_str(),
+                 options.keys.empty() ? "" : (" " + shell_line({"--keys", options.keys})).c_str());
   }
   LocalWorkerOptions worker_options;
-  worker_options.program = worker_program;
+  worker_options.program = place.worker_program;
+  worker_options.keys = place.worker_keys;
   worker_options.endpoint = endpoint;
   worker_options.count =
       static_cast<unsigned>(std::min<std::uint64_t>(options.workers, state.planned() - state.stored()));
@@ -256,7 +271,7 @@ Exit run_session(const CampaignSpec& spec, const SessionOptions& options) {
       Result<CampaignStore> store =
           CampaignStore::open(std::move(place->lock), options.database, spec, build_hash());
       if (!store) return report(store.error());
-      exit = serve(spec, options, place->worker_program, std::move(place->socket), *store);
+      exit = serve(spec, options, std::move(*place), *store);
       return Exit::done;
     });
     if (opened != Exit::done) return opened;

@@ -12,6 +12,8 @@ namespace fatmc::cli {
 struct SessionOptions {
   std::string database;
   std::string endpoint = "tcp://127.0.0.1:*";
+  /// Folder of keys; empty: keys of its own when it starts its workers, else a plain socket on the loopback.
+  std::string keys;
   /// Worker processes to start here; 0: workers come by themselves.
   unsigned workers = 0;
   bool verbose = false;

@@ -10,7 +10,7 @@ namespace fatmc::cli {
 namespace {
 
 struct CoordinatorOptions {
-  std::string spec, database, endpoint;
+  std::string spec, database, endpoint, keys;
   SpecChanges changes;
   bool verbose = false;
 };
@@ -18,18 +18,21 @@ struct CoordinatorOptions {
 std::vector<std::string> resume_words(const CoordinatorOptions& options) {
   std::vector<std::string> words{"fatmc",          "coordinator", options.spec,    "--bind",
                                  options.endpoint, "--db",        options.database};
+  if (!options.keys.empty()) words.insert(words.end(), {"--keys", options.keys});
   for (std::string& word : words_of(options.changes)) words.push_back(std::move(word));
   return words;
 }
 
 Exit serve(const CoordinatorOptions& options) {
-  if (const Status status = check_plain_endpoint(options.endpoint, "--bind"); !status)
+  const Protection protection = options.keys.empty() ? Protection::plain : Protection::curve;
+  if (const Status status = check_endpoint(options.endpoint, "--bind", protection); !status)
     return report(status.error());
   const Result<CampaignSpec> spec = read_campaign(options.spec, options.changes);
   if (!spec) return report(spec.error());
   SessionOptions session;
   session.database = options.database;
   session.endpoint = options.endpoint;
+  session.keys = options.keys;
   session.verbose = options.verbose;
   session.resume_command = shell_line(resume_words(options));
   return run_session(*spec, session);
@@ -42,13 +45,15 @@ void add_coordinator_command(CLI::App& app, Exit& exit) {
   CLI::App* command =
       app.add_subcommand("coordinator", "serves a campaign to workers that are started elsewhere");
   command->footer(
-      "Plain TCP is for the loopback alone. The database is resumed when it exists.\n"
-      "Example: fatmc coordinator campaigns/coverage/spec.toml --bind tcp://127.0.0.1:5555 --db "
-      "results/coverage.db\n"
-      "    and: fatmc-worker --connect tcp://127.0.0.1:5555 --jobs 2");
+      "Without keys it may be reached from this machine alone. The database is resumed when it exists.\n"
+      "Example: fatmc keygen keys\n"
+      "         fatmc coordinator campaigns/coverage/spec.toml --bind \"tcp://*:5555\" --keys keys "
+      "--db results/coverage.db\n"
+      "         fatmc-worker --connect tcp://HOST:5555 --keys keys --jobs 2");
   command->add_option("SPEC", options->spec, "the campaign (TOML)")->required();
-  command->add_option("--bind", options->endpoint, "endpoint, tcp://127.0.0.1:PORT or ipc://PATH")
-      ->required();
+  command->add_option("--bind", options->endpoint, "endpoint, tcp://HOST:PORT or ipc://PATH")->required();
+  command->add_option("--keys", options->keys,
+                      "folder of keys made by `fatmc keygen` (needed: coordinator.key, workers.pub)");
   command->add_option("--db", options->database, "database")->required();
   add_spec_options(*command, options->changes);
   command->add_flag("--verbose", options->verbose, "log messages to standard error");

@@ -11,9 +11,11 @@ int run(int argc, char** argv) {
   Exit exit = Exit::done;
   add_run_command(app, exit);
   add_coordinator_command(app, exit);
+  add_keygen_command(app, exit);
   add_status_command(app, exit);
   add_query_command(app, exit);
   add_digest_command(app, exit);
+  add_migrate_command(app, exit);
   add_tables_command(app, exit);
   add_replay_command(app, exit);
   add_pause_command(app, exit);

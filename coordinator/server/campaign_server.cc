@@ -8,7 +8,6 @@
 #include <zmq.hpp>
 
 #include "core/base/check.h"
-#include "proto/endpoint.h"
 #include "proto/host_name.h"
 
 namespace fatmc {
@@ -16,7 +15,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kLingerMs = 1000;
 constexpr int kMessagesBetweenLooks = 256;  // at signals and clocks, when messages never end
 
 sigset_t served_signals() {
@@ -44,36 +42,6 @@ BlockedSignals::BlockedSignals() {
 
 BlockedSignals::~BlockedSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
-struct BoundSocket::Parts {
-  zmq::context_t context{1};
-  zmq::socket_t socket{context, zmq::socket_type::router};
-  std::string endpoint;
-};
-
-BoundSocket::BoundSocket(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
-BoundSocket::BoundSocket(BoundSocket&&) noexcept = default;
-BoundSocket::~BoundSocket() = default;
-
-const std::string& BoundSocket::endpoint() const { return parts_->endpoint; }
-
-Result<BoundSocket> BoundSocket::bind(const std::string& endpoint) {
-  if (Status status = check_plain_endpoint(endpoint, "--bind"); !status) return fail(status.error());
-  auto parts = std::make_unique<Parts>();
-  zmq::socket_t& socket = parts->socket;
-  socket.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(kMaxFrameBytes));
-  socket.set(zmq::sockopt::linger, kLingerMs);
-  socket.set(zmq::sockopt::router_handover, true);  // a worker that reconnects keeps its routing id
-  socket.set(zmq::sockopt::ipv6, endpoint.find('[') != std::string::npos);
-  try {
-    socket.bind(endpoint);
-  } catch (const zmq::error_t& e) {
-    return fail(
-        Error{"", 0, "--bind", "\"" + endpoint + "\" cannot be used (" + e.what() + "), write another port"});
-  }
-  parts->endpoint = socket.get(zmq::sockopt::last_endpoint);
-  return BoundSocket(std::move(parts));
-}
-
 struct CampaignServer::Parts {
   BoundSocket bound;
   zmq::socket_t& socket;
@@ -81,17 +49,23 @@ struct CampaignServer::Parts {
   std::vector<StoreRequest> batch;
   std::size_t batch_rows = 0;
   MonotonicTime batch_since{};
-  explicit Parts(BoundSocket given) : bound(std::move(given)), socket(bound.parts_->socket) {}
+  explicit Parts(BoundSocket given) : bound(std::move(given)), socket(bound.router()) {}
   ~Parts() { ::close(signals); }
 };
 
 CampaignServer::CampaignServer(BoundSocket socket, const ServerOptions& options, CampaignState& state,
                                CampaignStore& store)
-    : options_(options), state_(state), store_(store), parts_(std::make_unique<Parts>(std::move(socket))) {
+    : options_(options),
+      state_(state),
+      store_(store),
+      parts_(std::make_unique<Parts>(std::move(socket))),
+      limits_(options.rates) {
   FATMC_CHECK(parts_->signals >= 0, "out of file descriptors");
 }
 
 CampaignServer::~CampaignServer() = default;
+
+const BoundSocket& CampaignServer::socket() const { return parts_->bound; }
 
 void CampaignServer::send(const WorkerId& worker, const Message& message) {
   spdlog::debug("to {}: {}", worker.substr(0, 8), message_name(message));
@@ -154,6 +128,7 @@ void CampaignServer::receive() {
       }
       continue;
     }
+    if (!limits_.admit(id.to_string(), frame.size(), now())) continue;
     Result<Message> message = decode(frame.to_string_view());
     if (!message) {
       ++malformed_;
@@ -175,12 +150,14 @@ std::chrono::milliseconds CampaignServer::wait_time() const {
 
 ServerEnd CampaignServer::run(const ServerHooks& hooks) {
   hooks_ = &hooks;
-  zmq::pollitem_t items[] = {{parts_->socket.handle(), 0, ZMQ_POLLIN, 0},
-                             {nullptr, parts_->signals, ZMQ_POLLIN, 0}};
+  std::vector<zmq::pollitem_t> items{{parts_->socket.handle(), 0, ZMQ_POLLIN, 0},
+                                     {nullptr, parts_->signals, ZMQ_POLLIN, 0}};
+  for (void* handle : parts_->bound.admission_handles()) items.push_back({handle, 0, ZMQ_POLLIN, 0});
   MonotonicTime last_tick = now();
   ServerEnd end = ServerEnd::finished;
   while (!state_.finished()) {
-    zmq::poll(items, std::size(items), wait_time());
+    zmq::poll(items, wait_time());
+    parts_->bound.serve_admission();
     signalfd_siginfo signal{};
     bool interrupted = false;
     while (::read(parts_->signals, &signal, sizeof signal) == sizeof signal) {
@@ -195,6 +172,7 @@ ServerEnd CampaignServer::run(const ServerHooks& hooks) {
     if (now() - last_tick >= options_.tick) {
       last_tick = now();
       state_.on_tick(last_tick, *this);
+      limits_.forget_silent(last_tick);
       if (hooks.on_tick) hooks.on_tick();
     }
     if (interrupted) {

@@ -12,6 +12,8 @@
 #include <memory>
 #include <string>
 
+#include "coordinator/server/bound_socket.h"
+#include "coordinator/server/peer_limits.h"
 #include "coordinator/state/campaign_state.h"
 #include "coordinator/store/campaign_store.h"
 #include "core/base/error.h"
@@ -22,6 +24,7 @@ struct ServerOptions {
   std::size_t batch_rows = kMaxRowsPerMessage;
   std::chrono::milliseconds batch_wait{50};
   std::chrono::milliseconds tick{100};
+  RateLimits rates;
 };
 
 /// What happens beside the socket. Each is called on the server's thread and may be empty.
@@ -36,24 +39,6 @@ struct ServerHooks {
 };
 
 enum class ServerEnd { finished, interrupted, failed };
-
-/// The ROUTER socket, bound: had before a database is touched, so that a port in use leaves no trace. What
-/// workers send meanwhile waits in it.
-class BoundSocket {
- public:
-  static Result<BoundSocket> bind(const std::string& endpoint = "tcp://127.0.0.1:*");
-  BoundSocket(BoundSocket&&) noexcept;
-  ~BoundSocket();
-
-  /// With the port that was found for "*".
-  [[nodiscard]] const std::string& endpoint() const;
-
- private:
-  friend class CampaignServer;
-  struct Parts;
-  explicit BoundSocket(std::unique_ptr<Parts> parts);
-  std::unique_ptr<Parts> parts_;
-};
 
 class CampaignServer : private Outbox {
  public:
@@ -72,6 +57,9 @@ class CampaignServer : private Outbox {
   void on_process_ended(std::uint32_t pid);
   /// Messages that could not be read.
   [[nodiscard]] std::uint64_t malformed() const { return malformed_; }
+  /// Messages dropped unread, of peers that send too much.
+  [[nodiscard]] std::uint64_t throttled() const { return limits_.dropped(); }
+  [[nodiscard]] const BoundSocket& socket() const;
 
  private:
   struct Parts;
@@ -87,6 +75,7 @@ class CampaignServer : private Outbox {
   CampaignStore& store_;
   std::unique_ptr<Parts> parts_;
   const ServerHooks* hooks_ = nullptr;  // of run()
+  PeerLimits limits_;
   std::uint64_t malformed_ = 0;
 };
 

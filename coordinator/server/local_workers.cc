@@ -18,6 +18,7 @@ namespace fatmc {
 namespace {
 
 constexpr const char* kLeaveAfterSeconds = "10";
+constexpr int kKeysDescriptor = 3;
 
 // A worker computes one trial at a time, so that libraries with threads of their own would only fight for
 // cores.
@@ -55,7 +56,14 @@ Result<std::string> worker_program_beside_this() {
   return program;
 }
 
-LocalWorkers::~LocalWorkers() { stop(std::chrono::milliseconds(0)); }
+LocalWorkers::LocalWorkers(LocalWorkerOptions options) : options_(std::move(options)) {
+  if (options_.keys) keys_ = open_worker_keys(*options_.keys);
+}
+
+LocalWorkers::~LocalWorkers() {
+  stop(std::chrono::milliseconds(0));
+  if (keys_ >= 0) ::close(keys_);
+}
 
 void LocalWorkers::start() {
   for (unsigned i = 0; i < options_.count; ++i) spawn();
@@ -64,6 +72,8 @@ void LocalWorkers::start() {
 void LocalWorkers::spawn() {
   std::vector<std::string> arguments{options_.program, "--connect",       options_.endpoint, "--jobs", "1",
                                      "--leave-after",  kLeaveAfterSeconds};
+  if (options_.keys)
+    arguments.insert(arguments.end(), {"--keys-descriptor", std::to_string(kKeysDescriptor)});
   if (options_.verbose) arguments.emplace_back("--verbose");
   std::vector<std::string> environment = worker_environment();
   posix_spawnattr_t attributes;
@@ -76,6 +86,7 @@ void LocalWorkers::spawn() {
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", 0, 0);
   posix_spawn_file_actions_adddup2(&actions, 2, 1);  // standard output belongs to the tables
+  if (options_.keys) posix_spawn_file_actions_adddup2(&actions, keys_, kKeysDescriptor);
   pid_t pid = 0;
   const int error = posix_spawn(&pid, options_.program.c_str(), &actions, &attributes,
                                 pointers(arguments).data(), pointers(environment).data());

@@ -5,16 +5,20 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/error.h"
+#include "proto/curve_keys.h"
 
 namespace fatmc {
 
 struct LocalWorkerOptions {
   std::string program;  ///< path of fatmc-worker
   std::string endpoint;
+  /// Keys of the run; they reach a worker through a descriptor that it inherits. None: a plain socket.
+  std::optional<WorkerKeys> keys;
   unsigned count = 1;
   bool verbose = false;
   /// Crashes without a single trial stored in between after which restarting is given up.
@@ -24,7 +28,7 @@ struct LocalWorkerOptions {
 /// Single-threaded: all calls from the server's thread.
 class LocalWorkers {
  public:
-  explicit LocalWorkers(LocalWorkerOptions options) : options_(std::move(options)) {}
+  explicit LocalWorkers(LocalWorkerOptions options);
   /// Waits for them (see stop()).
   ~LocalWorkers();
   LocalWorkers(const LocalWorkers&) = delete;
@@ -48,6 +52,7 @@ class LocalWorkers {
   void judge(int status, std::uint64_t stored);
 
   LocalWorkerOptions options_;
+  int keys_ = -1;
   std::vector<pid_t> processes_;
   std::uint64_t stored_at_last_crash_ = 0;
   unsigned crashes_ = 0;

@@ -69,6 +69,12 @@ Result<CampaignReader> CampaignReader::open(const std::string& path) {
     auto db = std::make_unique<SQLite::Database>(path, SQLite::OPEN_READONLY, 5000);
     Result<StoredCampaign> campaign = read_campaign(*db, path);
     if (!campaign) return fail(campaign.error());
+    if (campaign->schema < kSchemaVersion) {
+      return fail(Error{path, 0, "",
+                        "has schema " + std::to_string(campaign->schema) + ", older than this program's " +
+                            std::to_string(kSchemaVersion) + "; bring it up to date by: fatmc migrate " +
+                            path});
+    }
     return CampaignReader(std::make_unique<Parts>(Parts{std::move(db), std::move(*campaign)}));
   } catch (const SQLite::Exception& e) {
     if (!is_fault_of_file(e)) throw;

@@ -6,14 +6,14 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
 #include <map>
 #include <optional>
 
 #include "coordinator/store/database_error.h"
+#include "coordinator/store/database_file.h"
+#include "coordinator/store/migration.h"
 #include "coordinator/store/schema.h"
-#include "coordinator/store/spec_difference.h"
 #include "coordinator/store/stored_campaign.h"
 #include "coordinator/store/writer_lock.h"
 
@@ -23,118 +23,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "arrays are stored as little-endian doubles");
 
 constexpr int kBusyMs = 5000;
-constexpr std::uint32_t kHeartbeatMs = 500;  // of the stored frame, which nobody is sent
-
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text;
-}
-
-// A file without a table: new, or left by a process that died while making it.
-bool is_blank(const std::string& path) {
-  if (!std::filesystem::exists(path) || std::filesystem::file_size(path) == 0) return true;
-  const SQLite::Database db(path, SQLite::OPEN_READWRITE, kBusyMs);
-  SQLite::Statement tables(db, "SELECT 1 FROM sqlite_master");
-  return !tables.executeStep();
-}
-
-void create(SQLite::Database& db, const CampaignSpec& spec, const std::string& build) {
-  SQLite::Transaction transaction(db);
-  db.exec(kSchemaSql);
-  db.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
-  db.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
-  SQLite::Statement campaign(db, "INSERT INTO campaign VALUES (1, ?, ?, ?, ?, ?, ?, ?, ?)");
-  const std::string frame = encode(Welcome{spec.identity(), spec.tree, kHeartbeatMs});
-  campaign.bind(1, spec.name);
-  campaign.bind(2, spec.study);
-  campaign.bind(3, static_cast<std::int64_t>(spec.seed));
-  campaign.bind(4, spec.identity());
-  campaign.bind(5, build);
-  campaign.bind(6, canonical_text(spec.tree));
-  campaign.bind(7, frame.data(), static_cast<int>(frame.size()));
-  campaign.bind(8, utc_now());
-  campaign.exec();
-  SQLite::Statement cell(db, "INSERT INTO cell VALUES (?, ?, ?)");
-  for (std::size_t i = 0; i < spec.cells.size(); ++i) {
-    cell.bind(1, static_cast<std::int64_t>(i));
-    cell.bind(2, spec.cells[i].name);
-    cell.bind(3, static_cast<std::int64_t>(spec.cells[i].repetitions));
-    cell.exec();
-    cell.reset();
-  }
-  transaction.commit();
-}
-
-Status check_same(const std::string& path, const StoredCampaign& stored, const CampaignSpec& spec,
-                  const std::string& build) {
-  const std::string remedy = "; repeat what it was made with, or name another file by --db";
-  if (stored.spec.seed != spec.seed) {
-    return fail(Error{path, 0, "seed",
-                      "the database was made with seed " + std::to_string(stored.spec.seed) +
-                          ", this run has " + std::to_string(spec.seed) + remedy});
-  }
-  if (stored.identity != spec.identity()) {
-    if (auto difference = first_difference(spec.tree, stored.spec.tree)) {
-      difference->message += " (" + path + ")" + remedy;
-      return fail(*difference);
-    }
-    return fail(Error{path, 0, "", "the database was made with another spec" + remedy});
-  }
-  if (stored.build != build) {
-    return fail(Error{path, 0, "build",
-                      "the database was made by build " + stored.build.substr(0, 12) + ", this program is " +
-                          build.substr(0, 12) +
-                          ", whose numbers may differ; finish it with that build, or name "
-                          "another file by --db"});
-  }
-  return {};
-}
-
-// The figures to compare with and the precision wanted are no part of the identity and may be changed at any
-// time: the run that resumes decides.
-void renew_what_may_change(SQLite::Database& db, const StoredCampaign& stored, const CampaignSpec& spec) {
-  Tree tree = stored.spec.tree;
-  for (const char* key : {"published", "stop", "watch"}) {
-    tree.erase(key);
-    if (const Tree* own = spec.tree.find(key)) tree.set(key, *own);
-  }
-  if (canonical_text(tree) == canonical_text(stored.spec.tree)) return;
-  const std::string frame = encode(Welcome{stored.identity, tree, kHeartbeatMs});
-  SQLite::Statement campaign(db, "UPDATE campaign SET spec_canonical = ?, spec = ?");
-  campaign.bind(1, canonical_text(tree));
-  campaign.bind(2, frame.data(), static_cast<int>(frame.size()));
-  campaign.exec();
-}
-
-void resume(SQLite::Database& db, const StoredCampaign& stored, const CampaignSpec& spec) {
-  SQLite::Transaction transaction(db);
-  renew_what_may_change(db, stored, spec);
-  SQLite::Statement cell(db, "UPDATE cell SET repetitions = max(repetitions, ?) WHERE name = ?");
-  for (const Cell& planned : spec.cells) {
-    cell.bind(1, static_cast<std::int64_t>(planned.repetitions));
-    cell.bind(2, planned.name);
-    cell.exec();
-    cell.reset();
-  }
-  transaction.commit();
-}
-
-Status make_folder(const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  std::error_code error;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  if (error) {
-    return fail(
-        Error{path, 0, "", "its folder cannot be made (" + error.message() + "), name another by --db"});
-  }
-  if (std::filesystem::is_directory(path, error))
-    return fail(Error{path, 0, "", "is a folder, name a file by --db"});
-  return {};
-}
 
 }  // namespace
 
@@ -264,13 +152,33 @@ Result<CampaignStore> CampaignStore::open(WriterLock held, const std::string& pa
     auto parts = std::make_unique<Parts>(std::move(held), path);
     parts->db.exec("PRAGMA journal_mode = WAL");
     parts->db.exec("PRAGMA synchronous = FULL");
-    if (!stored) create(parts->db, spec, build);
-    ControlTables(parts->db).create();
+    if (stored) fatmc::migrate(parts->db, stored->schema);
+    SQLite::Transaction transaction(parts->db);
     if (stored) {
-      resume(parts->db, *stored, spec);
+      resume_campaign(parts->db, *stored, spec);
+    } else {
+      create_campaign(parts->db, spec, build);
     }
+    ControlTables(parts->db).create();
+    transaction.commit();
     parts->prepare();
     return CampaignStore(std::move(parts));
+  } catch (const SQLite::Exception& e) {
+    if (!is_fault_of_file(e)) throw;
+    return fail(database_error(e, path));
+  }
+}
+
+Result<int> CampaignStore::migrate(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path))
+    return fail(Error{path, 0, "", "no such database, name one that `fatmc run` made"});
+  Result<WriterLock> held = lock(path);
+  if (!held) return fail(held.error());
+  try {
+    SQLite::Database db(path, SQLite::OPEN_READWRITE, kBusyMs);
+    const Result<StoredCampaign> found = read_campaign(db, path);
+    if (!found) return fail(found.error());
+    return fatmc::migrate(db, found->schema);
   } catch (const SQLite::Exception& e) {
     if (!is_fault_of_file(e)) throw;
     return fail(database_error(e, path));

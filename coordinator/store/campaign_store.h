@@ -39,6 +39,9 @@ class CampaignStore {
   static Result<CampaignStore> open(const std::string& path, const CampaignSpec& spec,
                                     const std::string& build);
 
+  /// Brings a file of an older schema up to date, whatever its spec and build; the schema that was found.
+  static Result<int> migrate(const std::string& path);
+
   CampaignStore(CampaignStore&&) noexcept;
   ~CampaignStore();
 
@@ -94,6 +97,7 @@ struct StoredTrial {
 /// Reads a campaign's rows, also while another process writes them.
 class CampaignReader {
  public:
+  /// An Error, too, for a file of an older schema: CampaignStore::migrate() is the remedy.
   static Result<CampaignReader> open(const std::string& path);
 
   CampaignReader(CampaignReader&&) noexcept;

@@ -154,13 +154,23 @@ TEST(Wire, RandomBytesAreNeverACrash) {
 TEST(Endpoint, OnlyTheLoopbackAndIpcAreAllowedWithoutKeys) {
   for (const char* good : {"tcp://127.0.0.1:5555", "tcp://127.0.0.1:*", "tcp://127.9.8.7:1",
                            "tcp://localhost:80", "tcp://[::1]:5555", "ipc:///tmp/socket"}) {
-    EXPECT_TRUE(check_plain_endpoint(good, "--bind")) << good;
+    EXPECT_TRUE(check_endpoint(good, "--bind", Protection::plain)) << good;
   }
   for (const char* bad :
        {"tcp://0.0.0.0:5555", "tcp://*:5555", "tcp://192.168.1.2:5555", "tcp://127.0.0.1.example.org:1",
         "tcp://127.0.0.1", "tcp://127.0.0.1:port", "tcp://127.0.0.1:70000", "tcp://127.0.0.999:1",
         "tcp://localhost.example.org:1", "udp://127.0.0.1:1", "ipc://", ""}) {
-    EXPECT_FALSE(check_plain_endpoint(bad, "--bind")) << bad;
+    EXPECT_FALSE(check_endpoint(bad, "--bind", Protection::plain)) << bad;
+  }
+}
+
+TEST(Endpoint, WithKeysEveryHostIsAllowedAndNonsenseIsNot) {
+  for (const char* good :
+       {"tcp://0.0.0.0:5555", "tcp://*:*", "tcp://node7.example.org:1", "tcp://[fe80::1]:5"}) {
+    EXPECT_TRUE(check_endpoint(good, "--bind", Protection::curve)) << good;
+  }
+  for (const char* bad : {"tcp://node7", "tcp://:5555", "udp://127.0.0.1:1", "ipc://", ""}) {
+    EXPECT_FALSE(check_endpoint(bad, "--bind", Protection::curve)) << bad;
   }
 }
 

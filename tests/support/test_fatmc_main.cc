@@ -7,9 +7,11 @@ int main(int argc, char** argv) {
   fatmc::cli::Exit exit = fatmc::cli::Exit::done;
   fatmc::cli::add_run_command(app, exit);
   fatmc::cli::add_coordinator_command(app, exit);
+  fatmc::cli::add_keygen_command(app, exit);
   fatmc::cli::add_status_command(app, exit);
   fatmc::cli::add_query_command(app, exit);
   fatmc::cli::add_digest_command(app, exit);
+  fatmc::cli::add_migrate_command(app, exit);
   fatmc::cli::add_tables_command(app, exit);
   fatmc::cli::add_replay_command(app, exit);
   fatmc::cli::add_pause_command(app, exit);
