@@ -38,6 +38,7 @@ void add_resume_command(CLI::App& app, Exit& exit);
 void add_extend_command(CLI::App& app, Exit& exit);
 void add_explain_command(CLI::App& app, Exit& exit);
 void add_ssv_command(CLI::App& app, Exit& exit);
+void add_identify_command(CLI::App& app, Exit& exit);
 void add_stability_command(CLI::App& app, Exit& exit);
 
 }  // namespace fatmc::cli

@@ -1,6 +1,4 @@
 // fatmc simulate: one flight as a record.
-#include <unistd.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <limits>
@@ -10,6 +8,7 @@
 #include "campaigns/base/experiment.h"
 #include "campaigns/base/trial_record.h"
 #include "coordinator/cli/command.h"
+#include "coordinator/cli/output_path.h"
 #include "coordinator/input/record_file.h"
 #include "coordinator/input/toml_file.h"
 #include "core/base/text.h"
@@ -54,6 +53,7 @@ Result<Flown> fly(const Options& options) {
 // Nothing but an older record is overwritten, and what cannot be written is said before the flight.
 Status check_targets(const std::string& csv_path, const std::string& toml_path) {
   namespace fs = std::filesystem;
+<<<<<<< HEAD
   const fs::path folder = fs::absolute(csv_path).parent_path();
   if (!fs::is_directory(folder)) {
     return fail(
@@ -62,11 +62,10 @@ Status check_targets(const std::string& csv_path, const std::string& toml_path) 
   if (::access(folder.c_str(), W_OK) != 0) {
     return fail(Error{csv_path, 0, "-o", "the folder cannot be written to, name another"});
   }
+=======
+>>>>>>> main
   for (const std::string& path : {csv_path, toml_path}) {
-    const auto status = fs::symlink_status(path);
-    if (fs::exists(status) && !fs::is_regular_file(status)) {
-      return fail(Error{path, 0, "-o", "is no plain file, name another"});
-    }
+    if (Status status = check_output_file(path); !status) return status;
   }
   if (fs::exists(toml_path)) {
     const Result<Tree> old = read_toml(toml_path);
