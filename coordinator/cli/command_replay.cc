@@ -1,12 +1,12 @@
 // fatmc replay: one trial again, bit for bit, with its record on request.
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
 #include "campaigns/base/prepared_trials.h"
 #include "campaigns/registry_trials.h"
 #include "coordinator/cli/command.h"
 #include "coordinator/cli/database_use.h"
+#include "coordinator/cli/output_path.h"
 #include "coordinator/cli/trial_name.h"
 #include "coordinator/input/record_file.h"
 #include "coordinator/store/campaign_store.h"
@@ -24,14 +24,13 @@ struct ReplayOptions {
 
 Status check_target(const std::string& path) {
   if (path.empty()) return {};
-  const auto folder = std::filesystem::absolute(path).parent_path();
-  if (!std::filesystem::is_directory(folder)) {
-    return fail(Error{path, 0, "-o", "there is no folder " + folder.string() + ", make it or name another"});
+  const std::string toml = record_toml_beside(path);
+  if (toml == path) {
+    return fail(
+        Error{path, 0, "-o", "ends in .toml, name a CSV file: its roles go into the TOML beside it"});
   }
-  if (record_toml_beside(path) == path) {
-    return fail(Error{path, 0, "-o", "ends in .toml, name a CSV file: its roles go into the TOML beside it"});
-  }
-  return {};
+  if (Status status = check_output_file(path); !status) return status;
+  return check_output_file(toml);
 }
 
 void print_metrics(const TrialRow& row) {

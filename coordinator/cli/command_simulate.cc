@@ -53,17 +53,6 @@ Result<Flown> fly(const Options& options) {
 // Nothing but an older record is overwritten, and what cannot be written is said before the flight.
 Status check_targets(const std::string& csv_path, const std::string& toml_path) {
   namespace fs = std::filesystem;
-<<<<<<< HEAD
-  const fs::path folder = fs::absolute(csv_path).parent_path();
-  if (!fs::is_directory(folder)) {
-    return fail(
-        Error{csv_path, 0, "-o", "there is no folder " + folder.string() + ", make it or name another"});
-  }
-  if (::access(folder.c_str(), W_OK) != 0) {
-    return fail(Error{csv_path, 0, "-o", "the folder cannot be written to, name another"});
-  }
-=======
->>>>>>> main
   for (const std::string& path : {csv_path, toml_path}) {
     if (Status status = check_output_file(path); !status) return status;
   }
