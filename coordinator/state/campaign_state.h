@@ -30,7 +30,8 @@ using MonotonicTime = std::chrono::nanoseconds;  ///< since any fixed moment
 
 struct PlanCell {
   std::uint64_t repetitions = 0;
-  IndexRanges stored;  ///< what the database has already
+  IndexRanges stored;          ///< what the database has already
+  IndexRanges elsewhere = {};  ///< what another shard computes: no part of this plan
 };
 
 struct StateOptions {
@@ -112,7 +113,7 @@ class CampaignState {
  private:
   struct CellState {
     std::uint64_t repetitions = 0;
-    IndexRanges pending, received, stored;
+    IndexRanges pending, received, stored, elsewhere;
     std::map<std::uint64_t, std::uint32_t> retries;  ///< of trials that were leased more than once
     double mean_trial_ns = 0.0;
     std::uint64_t timed = 0;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -50,11 +51,21 @@ class CampaignStore {
   /// One transaction, on disk when it returns. A row whose trial is stored already is left out: `duplicate`
   /// when its content hash is the same, else `conflict`.
   std::vector<StoreReport> commit(std::span<const StoreRequest> requests);
+  /// Calls `work`, in which all commits are one transaction: it becomes durable when `work` returns true, and
+  /// leaves no trace when it returns false or throws.
+  void atomically(const std::function<bool()>& work);
 
  private:
   struct Parts;
   explicit CampaignStore(std::unique_ptr<Parts> parts);
   std::unique_ptr<Parts> parts_;
+};
+
+/// A row with all that is stored of it.
+struct StoredRow {
+  ComputedRow computed;
+  std::string host;
+  std::uint32_t pid = 0, attempts = 0;
 };
 
 struct OutcomeCount {
@@ -96,6 +107,8 @@ class CampaignReader {
   [[nodiscard]] std::optional<Throughput> throughput() const;
   /// Rows of a cell in the order of repetitions.
   void visit(std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor) const;
+  /// The same with provenance and the stored content hash, which is not compared with the row.
+  void visit_stored(std::uint32_t cell, const std::function<void(StoredRow&)>& visitor) const;
   /// For SummaryStudy; the reader must outlive it.
   [[nodiscard]] RowSource rows() const;
   /// SHA-256 over all results in the order of their keys: the same whoever computed them, and when.
