@@ -1,6 +1,7 @@
 #include "coordinator/cli/campaign_input.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "campaigns/base/cell_grid.h"
@@ -102,6 +103,27 @@ std::vector<std::string> words_of(const SpecChanges& changes) {
   if (changes.seed) words.insert(words.end(), {"--seed", std::to_string(*changes.seed)});
   if (!changes.size.empty()) words.insert(words.end(), {"--size", changes.size});
   return words;
+}
+
+std::pair<std::uint64_t, std::uint64_t> Shard::range(std::uint64_t repetitions) const {
+  return {repetitions * (number - 1) / count, repetitions * number / count};
+}
+
+Result<Shard> parse_shard(const std::string& text) {
+  constexpr std::uint64_t kMostShards = 1'000'000;
+  const std::size_t slash = text.find('/');
+  Shard shard;
+  const auto read = [&](std::size_t first, std::size_t last, std::uint64_t& value) {
+    const auto end = std::from_chars(text.data() + first, text.data() + last, value);
+    return end.ec == std::errc() && end.ptr == text.data() + last;
+  };
+  if (slash == std::string::npos || !read(0, slash, shard.number) ||
+      !read(slash + 1, text.size(), shard.count) || shard.number < 1 || shard.number > shard.count ||
+      shard.count > kMostShards) {
+    return fail(
+        Error{"", 0, "--shard", "\"" + text + "\" is no shard, write for instance 2/4: the second of four"});
+  }
+  return shard;
 }
 
 Result<CampaignSpec> read_campaign(const std::string& path, const SpecChanges& changes) {

@@ -29,6 +29,7 @@ namespace fatmc::cli {
 namespace {
 
 constexpr std::chrono::milliseconds kByePatience{1500};
+constexpr std::chrono::milliseconds kLauncherPatience{10'000};
 
 // results/last names the databases of the last run, a path a line, for `fatmc tables` without arguments.
 // A convenience, so that failing is no failure of the run.
@@ -170,6 +171,16 @@ Result<Place> take_place(const SessionOptions& options) {
   return Place{std::move(program), std::move(worker_keys), std::move(*lock), std::move(*socket)};
 }
 
+std::vector<PlanCell> plan_of_shard(const CampaignSpec& spec, const Shard& shard, CampaignStore& store) {
+  std::vector<PlanCell> plan = store.plan(spec);
+  for (PlanCell& cell : plan) {
+    const auto [first, last] = shard.range(cell.repetitions);
+    cell.elsewhere.insert(0, first);
+    cell.elsewhere.insert(last, cell.repetitions);
+  }
+  return plan;
+}
+
 // The serving part; returns nothing when all is stored.
 std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& options, Place place,
                           CampaignStore& store) {
@@ -178,15 +189,21 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
       static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(
                                      std::chrono::system_clock::now().time_since_epoch())
                                      .count());
-  CampaignState state(store.plan(spec), Welcome{spec.identity(), spec.tree, 0}, build_hash(), state_options);
-  CampaignWatch watch(spec, options.database, state, store);
+  CampaignState state(plan_of_shard(spec, options.shard, store), Welcome{spec.identity(), spec.tree, 0},
+                      build_hash(), state_options);
+  CampaignWatch watch(spec, options.database, options.shard.count > 1, state, store);
   if (state.finished()) {
     write_last(options.database);
     return std::nullopt;
   }
   const std::string endpoint = place.socket.endpoint();
   CampaignServer server(std::move(place.socket), {}, state, store);
-  if (options.workers == 0) {
+  std::unique_ptr<Launcher> launcher;
+  if (options.launcher) {
+    Result<std::unique_ptr<Launcher>> made = options.launcher(endpoint);
+    if (!made) return report(made.error());
+    launcher = std::move(*made);
+  } else if (options.workers == 0) {
     std::fprintf(stderr, "fatmc: %llu trials to do; start workers by: fatmc-worker --connect %s%s\n",
                  static_cast<unsigned long long>(state.planned() - state.stored()), endpoint.c_str(),
                  options.keys.empty() ? "" : (" " + shell_line({"--keys", options.keys})).c_str());
@@ -207,6 +224,10 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
   hooks.on_tick = [&] {
     watch.on_tick(server);
     progress.show(watch.progress());
+    if (launcher) {
+      launcher->tick({state.planned() - state.stored(), state.stored(), state.workers().size()},
+                     std::chrono::steady_clock::now());
+    }
     if (last_is_written || state.stored() == 0) return;
     last_is_written = true;
     write_last(options.database);
@@ -217,12 +238,13 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
   hooks.on_child = [&] {
     for (const std::uint32_t pid : workers.reap(state.stored())) server.on_process_ended(pid);
   };
-  hooks.failure = [&] { return workers.failure(); };
+  hooks.failure = [&] { return launcher ? launcher->failure() : workers.failure(); };
   const ServerEnd end = server.run(hooks);
   progress.finish(watch.progress());
   watch.on_end(end == ServerEnd::failed);
   if (!last_is_written && state.stored() > 0) write_last(options.database);
   workers.stop(kByePatience);
+  if (launcher) launcher->stop(kLauncherPatience);
   report_counters(state, server.malformed());
   if (end == ServerEnd::finished) return std::nullopt;
   const std::string resume = "; what is stored stays, go on by: " + options.resume_command;
@@ -232,29 +254,24 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
                  static_cast<unsigned long long>(state.planned()), resume.c_str());
     return Exit::partial;
   }
-  std::fprintf(stderr, "fatmc: %s%s%s%s\n", workers.failure().c_str(),
-               state.last_refusal().empty() ? "" : ": ", state.last_refusal().c_str(), resume.c_str());
+  std::fprintf(stderr, "fatmc: %s%s%s%s\n", hooks.failure().c_str(), state.last_refusal().empty() ? "" : ": ",
+               state.last_refusal().c_str(), resume.c_str());
   return Exit::failed;
 }
 
 }  // namespace
 
-std::string default_database(const CampaignSpec& spec) { return "results/" + spec.name + ".db"; }
+std::string default_database(const CampaignSpec& spec, const Shard& shard) {
+  if (shard.count == 1) return "results/" + spec.name + ".db";
+  return "results/" + spec.name + "." + std::to_string(shard.number) + "of" + std::to_string(shard.count) +
+         ".db";
+}
 
 std::string shell_line(const std::vector<std::string>& words) {
   std::string out;
   for (const std::string& word : words) {
     if (!out.empty()) out += ' ';
-    const bool plain = !word.empty() && word.find_first_not_of(
-                                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                            "0123456789-_./:=,+@%") == std::string::npos;
-    if (plain) {
-      out += word;
-      continue;
-    }
-    out += '\'';
-    for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    out += '\'';
+    out += shell_word(word);
   }
   return out;
 }

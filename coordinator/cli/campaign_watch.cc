@@ -26,10 +26,10 @@ class NoOutbox final : public Outbox {
 
 }  // namespace
 
-CampaignWatch::CampaignWatch(const CampaignSpec& spec, const std::string& database, CampaignState& state,
-                             CampaignStore& store)
-    : spec_(spec), state_(state), control_(store.control()) {
-  if (spec.precision) monitor_.emplace(*spec.precision, spec.cells.size());
+CampaignWatch::CampaignWatch(const CampaignSpec& spec, const std::string& database, bool is_shard,
+                             CampaignState& state, CampaignStore& store)
+    : spec_(spec), is_shard_(is_shard), state_(state), control_(store.control()) {
+  if (spec.precision && !is_shard) monitor_.emplace(*spec.precision, spec.cells.size());
   control_.clear_stops();  // the rule may be another one now: it is evaluated from the first trial on
   control_.set_in_flight({});
   read_stored(database);
@@ -100,7 +100,7 @@ void CampaignWatch::on_tick(CampaignServer& server) {
 void CampaignWatch::obey(CampaignServer& server) {
   const ControlState wanted = control_.read();
   for (std::uint32_t cell = 0; cell < wanted.repetitions.size() && cell < spec_.cells.size(); ++cell) {
-    if (wanted.repetitions[cell] == wanted_.repetitions[cell]) continue;
+    if (is_shard_ || wanted.repetitions[cell] == wanted_.repetitions[cell]) continue;
     // More trials alone: what is stored is never thrown away on a wish.
     if (wanted.repetitions[cell] <= state_.repetitions(cell)) continue;
     spdlog::info("cell {} extended to {} trials", spec_.cells[cell].name, wanted.repetitions[cell]);

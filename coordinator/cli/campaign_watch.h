@@ -18,8 +18,9 @@ namespace fatmc::cli {
 /// Single-threaded, called by the server's hooks. All it is given must outlive it.
 class CampaignWatch {
  public:
-  /// Reads what `database` holds already; cells that are precise enough by it are ended at once.
-  CampaignWatch(const CampaignSpec& spec, const std::string& database, CampaignState& state,
+  /// Reads what `database` holds already; cells that are precise enough by it are ended at once. A shard lacks
+  /// the trials before its own: neither [stop] nor more trials can be judged there.
+  CampaignWatch(const CampaignSpec& spec, const std::string& database, bool is_shard, CampaignState& state,
                 CampaignStore& store);
 
   void on_committed(const StoreRequest& request, const StoreReport& report, CampaignServer& server);
@@ -37,6 +38,7 @@ class CampaignWatch {
   [[nodiscard]] std::string precision_text() const;
 
   const CampaignSpec& spec_;
+  bool is_shard_;
   CampaignState& state_;
   ControlTables control_;
   ControlState wanted_;

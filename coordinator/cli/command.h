@@ -30,6 +30,7 @@ void add_keygen_command(CLI::App& app, Exit& exit);
 void add_status_command(CLI::App& app, Exit& exit);
 void add_query_command(CLI::App& app, Exit& exit);
 void add_digest_command(CLI::App& app, Exit& exit);
+void add_merge_command(CLI::App& app, Exit& exit);
 void add_migrate_command(CLI::App& app, Exit& exit);
 void add_tables_command(CLI::App& app, Exit& exit);
 void add_replay_command(CLI::App& app, Exit& exit);

@@ -2,6 +2,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include <cstdio>
+#include <ctime>
 #include <memory>
 
 #include "coordinator/cli/campaign_session.h"
@@ -51,6 +52,15 @@ std::string advice(const std::string& outcome) {
 
 std::string plural(std::uint64_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+std::string utc_text(std::uint64_t unix_us) {
+  const auto seconds = static_cast<std::time_t>(unix_us / 1'000'000);
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text;
 }
 
 IndexRanges missing_of(const CampaignReader& reader, std::uint32_t cell) {
@@ -149,15 +159,15 @@ void explain_campaign(const Explanation& at) {
   print_retries(at);
 }
 
-void explain_stored(const Explanation& at, const StoredTrial& trial, const std::string& name) {
-  const TrialRow& row = trial.row;
+void explain_stored(const Explanation& at, const StoredRow& trial, const std::string& name) {
+  const TrialRow& row = trial.computed.row;
   std::printf("%s: %s%s\n", name.c_str(), row.outcome.c_str(),
               row.detail.empty() ? "" : (": " + row.detail).c_str());
   std::printf("  computed on %s (process %u), begun %s, in %s s; leased %s\n", trial.host.c_str(), trial.pid,
-              trial.started.c_str(), significant(trial.duration_s, 3).c_str(),
+              utc_text(trial.computed.started_us).c_str(), significant(1e-9 * static_cast<double>(trial.computed.duration_ns), 3).c_str(),
               plural(trial.attempts, "time").c_str());
   std::printf("  seed %llu, build %s, content hash %s\n", static_cast<unsigned long long>(at.spec().seed),
-              at.reader.build().substr(0, 12).c_str(), trial.content_hash.substr(0, 16).c_str());
+              at.reader.build().substr(0, 12).c_str(), hex(trial.computed.hash).substr(0, 16).c_str());
   for (const auto& [metric, value] : row.metrics) {
     if (metric.starts_with(kDrawPrefix)) {
       std::printf("  drawn: %s = %s\n", metric.substr(kDrawPrefix.size()).c_str(), shortest(value).c_str());

@@ -56,21 +56,21 @@ Exit write_record(const PreparedCell& cell, TrialKey key, const std::string& pat
 
 // Says whether the row is the stored one.
 Exit compare(const CampaignReader& reader, TrialKey key, const TrialRow& row, const std::string& name) {
-  const std::string hash = hex(content_hash(row));
-  const std::optional<StoredTrial> stored = reader.trial(key);
+  const std::string hash = hex(content_hash(row)).substr(0, 16);
+  const std::optional<StoredRow> stored = reader.trial(key);
   const std::string outcome = row.outcome + (row.detail.empty() ? "" : " (" + row.detail + ")");
   if (!stored) {
     std::printf("%s: %s; not stored yet, so there is nothing to compare with\n", name.c_str(),
                 outcome.c_str());
     return Exit::done;
   }
-  if (stored->content_hash == hash) {
+  if (stored->computed.hash == content_hash(row)) {
     std::printf("%s: %s; bit-identical to the stored row (content hash %s)\n", name.c_str(), outcome.c_str(),
-                hash.substr(0, 16).c_str());
+                hash.c_str());
     return Exit::done;
   }
   std::fprintf(stderr, "fatmc: %s differs from the stored row: content hash %s, stored %s\n", name.c_str(),
-               hash.substr(0, 16).c_str(), stored->content_hash.substr(0, 16).c_str());
+               hash.c_str(), stored->content_hash.c_str());
   return Exit::failed;
 }
 

@@ -6,6 +6,7 @@
 #include "coordinator/cli/campaign_session.h"
 #include "coordinator/cli/command.h"
 #include "coordinator/cli/database_use.h"
+#include "coordinator/cli/launch_options.h"
 #include "coordinator/cli/plan_listing.h"
 
 namespace fatmc::cli {
@@ -13,8 +14,9 @@ namespace {
 
 struct RunOptions {
   std::string spec;
-  std::string database;
+  std::string database, shard;
   unsigned workers = std::max(1U, std::thread::hardware_concurrency());
+  LaunchOptions launch;
   SpecChanges changes;
   bool verbose = false;
   bool dry_run = false;
@@ -23,22 +25,47 @@ struct RunOptions {
 std::string resume_command(const RunOptions& options, const std::string& database) {
   std::vector<std::string> words{
       "fatmc", "run", options.spec, "--db", database, "--workers", std::to_string(options.workers)};
+  if (!options.shard.empty()) words.insert(words.end(), {"--shard", options.shard});
+  for (std::string& word : words_of(options.launch)) words.push_back(std::move(word));
   for (std::string& word : words_of(options.changes)) words.push_back(std::move(word));
   return shell_line(words);
 }
 
+// Workers here, or a launcher for those elsewhere.
+Status use_launcher(const RunOptions& options, const CampaignSpec& spec, SessionOptions& session) {
+  if (options.launch.is_local()) {
+    session.workers = options.workers;
+    return {};
+  }
+  Result<std::string> keys = key_folder(options.launch, session.database);
+  if (!keys) return fail(keys.error());
+  session.keys = *keys;
+  session.endpoint = bind_endpoint(options.launch, spec);
+  session.launcher = [&options, &spec, &session](const std::string& endpoint) {
+    return make_launcher(options.launch, spec, session.database, session.keys, endpoint, options.workers);
+  };
+  return {};
+}
+
 Exit run(const RunOptions& options) {
+  if (const Status status = check(options.launch); !status) return report(status.error());
   const Result<CampaignSpec> spec = read_campaign(options.spec, options.changes);
   if (!spec) return report(spec.error());
-  const std::string database = options.database.empty() ? default_database(*spec) : options.database;
+  SessionOptions session;
+  if (!options.shard.empty()) {
+    const Result<Shard> shard = parse_shard(options.shard);
+    if (!shard) return report(shard.error());
+    session.shard = *shard;
+  }
+  const std::string database =
+      options.database.empty() ? default_database(*spec, session.shard) : options.database;
   if (options.dry_run)
     return use_database(database, [&] {
       print_plan(*spec, database);
       return Exit::done;
     });
-  SessionOptions session;
   session.database = database;
-  session.workers = options.workers;
+  if (Status status = use_launcher(options, *spec, session); !status) return report(status.error());
   session.verbose = options.verbose;
   session.resume_command = resume_command(options, session.database);
   return run_session(*spec, session);
@@ -51,13 +78,19 @@ void add_run_command(CLI::App& app, Exit& exit) {
   CLI::App* command = app.add_subcommand("run", "runs a campaign on this machine and prints its tables");
   command->footer(
       "A database that exists is resumed; Ctrl-C stops cleanly (exit code 3), the same command goes on.\n"
-      "Example: fatmc run campaigns/coverage/spec.toml --trials 200 --workers 2");
+      "Example: fatmc run campaigns/coverage/spec.toml --trials 200 --workers 2\n"
+      "    and: fatmc run campaigns/coverage/spec.toml --launcher slurm --workers 40 "
+      "--sbatch=--partition=long\n"
+      "    and: fatmc run campaigns/coverage/spec.toml --launcher ssh --hosts node1:8,node2:8");
   command->add_option("SPEC", options->spec, "the campaign (TOML)")->required();
   command->add_option("--db", options->database,
                       "database (default: results/NAME.db, by the campaign's name)");
-  command->add_option("--workers", options->workers, "worker processes")
+  command->add_option("--workers", options->workers, "worker processes here, or pilots of Slurm")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
+  command->add_option("--shard", options->shard,
+                      "a part of the trials, for instance 2/4: the second of four; fatmc merge joins them");
+  add_launch_options(*command, options->launch);
   add_spec_options(*command, options->changes);
   command->add_flag("--dry-run", options->dry_run, "list cells and dispersions, run nothing");
   command->add_flag("--verbose", options->verbose, "log messages to standard error");

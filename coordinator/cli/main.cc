@@ -15,6 +15,7 @@ int run(int argc, char** argv) {
   add_status_command(app, exit);
   add_query_command(app, exit);
   add_digest_command(app, exit);
+  add_merge_command(app, exit);
   add_migrate_command(app, exit);
   add_tables_command(app, exit);
   add_replay_command(app, exit);

@@ -30,7 +30,8 @@ using MonotonicTime = std::chrono::nanoseconds;  ///< since any fixed moment
 
 struct PlanCell {
   std::uint64_t repetitions = 0;
-  IndexRanges stored;         ///< what the database has already
+  IndexRanges stored = {};     ///< what the database has already
+  IndexRanges elsewhere = {};  ///< what another shard computes: no part of this plan
   std::int64_t priority = 0;  ///< cells of a higher one go first; equals go in their order
 };
 
@@ -138,7 +139,7 @@ class CampaignState {
   struct CellState {
     std::uint64_t repetitions = 0;
     std::int64_t priority = 0;
-    IndexRanges pending, received, stored;
+    IndexRanges pending, received, stored, elsewhere;
     std::map<std::uint64_t, std::uint32_t> retries;  ///< of trials that were leased more than once
     double mean_trial_ns = 0.0;
     std::uint64_t timed = 0;

@@ -21,10 +21,10 @@ void CampaignState::set_repetitions(std::uint32_t index, std::uint64_t repetitio
                                     Outbox& out) {
   FATMC_CHECK(index < cells_.size(), "the cell is beyond the plan");
   CellState& cell = cells_[index];
-  planned_ += repetitions - cell.repetitions;
   if (repetitions > cell.repetitions) {
     cell.pending.insert(cell.repetitions, repetitions);
     pending_ += repetitions - cell.repetitions;
+    planned_ += repetitions - cell.repetitions;
     cell.repetitions = repetitions;
     serve_waiting(now, out);
     return;
@@ -34,6 +34,10 @@ void CampaignState::set_repetitions(std::uint32_t index, std::uint64_t repetitio
     ranges.erase(repetitions, UINT64_MAX);
     total -= before - ranges.size();
   };
+  planned_ -= cell.repetitions - repetitions;
+  std::uint64_t none = 0;
+  cut(cell.elsewhere, none);
+  planned_ -= none;  // what another shard computes was never planned here
   cut(cell.pending, pending_);
   cut(cell.received, received_);
   cut(cell.stored, stored_);

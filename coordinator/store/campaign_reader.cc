@@ -44,6 +44,22 @@ std::vector<double> read_reals(const SQLite::Column& column) {
   return values;
 }
 
+// All but key, metrics and arrays.
+StoredRow read_trial(SQLite::Statement& trial) {
+  StoredRow out;
+  out.computed.row.outcome = trial.getColumn(2).getString();
+  out.computed.row.detail = trial.getColumn(3).getString();
+  const SQLite::Column hash = trial.getColumn(4);
+  if (hash.getBytes() == static_cast<int>(out.computed.hash.size()))
+    std::memcpy(out.computed.hash.data(), hash.getBlob(), out.computed.hash.size());
+  out.host = trial.getColumn(5).getString();
+  out.pid = trial.getColumn(6).getUInt();
+  out.attempts = trial.getColumn(7).getUInt();
+  out.computed.started_us = static_cast<std::uint64_t>(trial.getColumn(8).getInt64());
+  out.computed.duration_ns = static_cast<std::uint64_t>(trial.getColumn(9).getInt64());
+  return out;
+}
+
 }  // namespace
 
 struct CampaignReader::Parts {
@@ -130,23 +146,30 @@ std::optional<Throughput> CampaignReader::throughput() const {
 
 void CampaignReader::visit(std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor,
                            RowSelection rows) const {
+  visit_stored(cell, [&](StoredRow& stored) { visitor(stored.computed.row); }, rows);
+}
+
+void CampaignReader::visit_stored(std::uint32_t cell, const std::function<void(StoredRow&)>& visitor,
+                                  RowSelection rows) const {
   SQLite::Database& db = *parts_->db;
   SQLite::Savepoint snapshot(db, "visit");  // several statements, one state of the database; visits may nest
   const auto names = read_names(db);
   const std::string range = " BETWEEN " + std::to_string(trial_id({cell, rows.first})) + " AND " +
                             std::to_string(trial_id({cell, 0}) + static_cast<std::int64_t>(rows.last) - 1) +
                             " ORDER BY ";
-  SQLite::Statement trials(db, "SELECT id, repetition, outcome, detail FROM trial WHERE id" + range + "id");
+  SQLite::Statement trials(db,
+                           "SELECT id, repetition, outcome, detail, content_hash, host, pid, attempts, "
+                           "started_us, duration_ns FROM trial WHERE id" +
+                               range + "id");
   SQLite::Statement metrics(db,
                             "SELECT trial, name, value FROM metric WHERE trial" + range + "trial, position");
   SQLite::Statement arrays(db, "SELECT trial, name, data FROM array WHERE trial" + range + "trial, position");
   bool more_metrics = metrics.executeStep();
   bool more_arrays = rows.arrays && arrays.executeStep();
   while (trials.executeStep()) {
-    TrialRow row;
+    StoredRow stored = read_trial(trials);
+    TrialRow& row = stored.computed.row;
     row.key = {cell, static_cast<std::uint64_t>(trials.getColumn(1).getInt64())};
-    row.outcome = trials.getColumn(2).getString();
-    row.detail = trials.getColumn(3).getString();
     const std::int64_t id = trials.getColumn(0).getInt64();
     consume(metrics, more_metrics, id, [&] {
       row.metrics.emplace_back(names.at(metrics.getColumn(1).getInt64()), read_real(metrics.getColumn(2)));
@@ -154,27 +177,17 @@ void CampaignReader::visit(std::uint32_t cell, const std::function<void(const Tr
     consume(arrays, more_arrays, id, [&] {
       row.arrays.emplace_back(names.at(arrays.getColumn(1).getInt64()), read_reals(arrays.getColumn(2)));
     });
-    visitor(row);
+    visitor(stored);
   }
   for (SQLite::Statement* statement : {&trials, &metrics, &arrays}) statement->reset();
   snapshot.release();
 }
 
-std::optional<StoredTrial> CampaignReader::trial(TrialKey key) const {
-  SQLite::Statement own(*parts_->db,
-                        "SELECT lower(hex(content_hash)), host, pid, attempts, "
-                        "strftime('%Y-%m-%dT%H:%M:%fZ', started_us / 1e6, 'unixepoch'), duration_ns / 1e9 "
-                        "FROM trial WHERE id = ?");
-  own.bind(1, trial_id(key));
-  if (!own.executeStep()) return std::nullopt;
-  StoredTrial out;
-  out.content_hash = own.getColumn(0).getString();
-  out.host = own.getColumn(1).getString();
-  out.pid = static_cast<std::uint32_t>(own.getColumn(2).getInt64());
-  out.attempts = static_cast<std::uint32_t>(own.getColumn(3).getInt64());
-  out.started = own.getColumn(4).getString();
-  out.duration_s = own.getColumn(5).getDouble();
-  visit(key.cell, [&](const TrialRow& row) { out.row = row; }, {key.repetition, key.repetition + 1, true});
+std::optional<StoredRow> CampaignReader::trial(TrialKey key) const {
+  std::optional<StoredRow> out;
+  visit_stored(
+      key.cell, [&](StoredRow& row) { out = std::move(row); },
+      {.first = key.repetition, .last = key.repetition + 1});
   return out;
 }
 

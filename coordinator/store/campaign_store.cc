@@ -30,8 +30,10 @@ struct CampaignStore::Parts {
   WriterLock lock;
   std::string path;
   SQLite::Database db;
-  std::optional<SQLite::Statement> insert_trial, find_hash, insert_metric, insert_array, insert_name;
+  std::optional<SQLite::Statement> insert_trial, find_hash, insert_metric, insert_array, insert_name,
+      find_name;
   std::map<std::string, std::int64_t, std::less<>> names;
+  bool in_transaction = false;  ///< of atomically()
 
   Parts(WriterLock held, const std::string& file)
       : lock(std::move(held)),
@@ -40,7 +42,8 @@ struct CampaignStore::Parts {
 
   // Leaves a single file that may be copied, unless a reader is in it at this moment.
   ~Parts() {
-    for (auto* statement : {&insert_trial, &find_hash, &insert_metric, &insert_array, &insert_name})
+    for (auto* statement :
+         {&insert_trial, &find_hash, &insert_metric, &insert_array, &insert_name, &find_name})
       statement->reset();
     db.tryExec("PRAGMA journal_mode = DELETE");
   }
@@ -51,17 +54,32 @@ struct CampaignStore::Parts {
     insert_metric.emplace(db, "INSERT INTO metric VALUES (?, ?, ?, ?)");
     insert_array.emplace(db, "INSERT INTO array VALUES (?, ?, ?, ?)");
     insert_name.emplace(db, "INSERT INTO name (text) VALUES (?)");
-    SQLite::Statement all(db, "SELECT id, text FROM name");
-    while (all.executeStep()) names.emplace(all.getColumn(1).getString(), all.getColumn(0).getInt64());
+    find_name.emplace(db, "SELECT id FROM name WHERE text = ?");
   }
 
   std::int64_t name_id(const std::string& text) {
     const auto known = names.find(text);
     if (known != names.end()) return known->second;
-    insert_name->bindNoCopy(1, text);
-    insert_name->exec();
-    insert_name->reset();
-    return names.emplace(text, db.getLastInsertRowid()).first->second;
+    find_name->bind(1, text);
+    const bool found = find_name->executeStep();
+    std::int64_t id = found ? find_name->getColumn(0).getInt64() : 0;
+    find_name->reset();
+    if (!found) {
+      insert_name->bind(1, text);
+      insert_name->exec();
+      insert_name->reset();
+      id = db.getLastInsertRowid();
+    }
+    return names.emplace(text, id).first->second;
+  }
+
+  // After a transaction that failed: its names are not in the file, and a statement may stand where it
+  // failed.
+  void forget() {
+    names.clear();
+    for (auto* statement :
+         {&insert_trial, &find_hash, &insert_metric, &insert_array, &insert_name, &find_name})
+      (*statement)->tryReset();
   }
 
   StoreOutcome insert(const ComputedRow& computed, const StoreRequest& request, std::uint32_t attempts);
@@ -187,7 +205,7 @@ Result<int> CampaignStore::migrate(const std::string& path) {
 
 std::vector<PlanCell> CampaignStore::plan(const CampaignSpec& spec) {
   std::vector<PlanCell> plan;
-  for (const Cell& cell : spec.cells) plan.push_back({cell.repetitions, {}, cell.priority});
+  for (const Cell& cell : spec.cells) plan.push_back({.repetitions = cell.repetitions, .stored = {}, .elsewhere = {}, .priority = cell.priority});
   SQLite::Statement keys(parts_->db, "SELECT cell, repetition FROM trial ORDER BY id");
   PlanCell* cell = nullptr;
   std::uint64_t first = 0, last = 0;
@@ -210,19 +228,41 @@ std::vector<PlanCell> CampaignStore::plan(const CampaignSpec& spec) {
 
 std::vector<StoreReport> CampaignStore::commit(std::span<const StoreRequest> requests) {
   std::vector<StoreReport> reports;
-  SQLite::Transaction transaction(parts_->db, SQLite::TransactionBehavior::IMMEDIATE);
-  for (const StoreRequest& request : requests) {
-    StoreReport report{request.worker, request.sequence, {}};
-    for (std::size_t i = 0; i < request.rows.size(); ++i) {
-      report.rows.emplace_back(request.rows[i].row.key,
-                               parts_->insert(request.rows[i], request, request.attempts[i]));
+  const auto insert_all = [&] {
+    for (const StoreRequest& request : requests) {
+      StoreReport report{request.worker, request.sequence, {}};
+      for (std::size_t i = 0; i < request.rows.size(); ++i) {
+        report.rows.emplace_back(request.rows[i].row.key,
+                                 parts_->insert(request.rows[i], request, request.attempts[i]));
+      }
+      reports.push_back(std::move(report));
     }
-    reports.push_back(std::move(report));
+    return true;
+  };
+  if (parts_->in_transaction) {
+    insert_all();
+  } else {
+    atomically(insert_all);
   }
-  transaction.commit();
   return reports;
 }
 
 ControlTables CampaignStore::control() { return ControlTables(parts_->db); }
+
+void CampaignStore::atomically(const std::function<bool()>& work) {
+  bool done = false;
+  try {
+    SQLite::Transaction transaction(parts_->db, SQLite::TransactionBehavior::IMMEDIATE);
+    parts_->in_transaction = true;
+    done = work();
+    if (done) transaction.commit();
+  } catch (...) {
+    parts_->in_transaction = false;
+    parts_->forget();
+    throw;
+  }
+  parts_->in_transaction = false;
+  if (!done) parts_->forget();
+}
 
 }  // namespace fatmc

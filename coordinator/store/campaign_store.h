@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -51,6 +52,9 @@ class CampaignStore {
   /// One transaction, on disk when it returns. A row whose trial is stored already is left out: `duplicate`
   /// when its content hash is the same, else `conflict`.
   std::vector<StoreReport> commit(std::span<const StoreRequest> requests);
+  /// Calls `work`, in which all commits are one transaction: it becomes durable when `work` returns true, and
+  /// leaves no trace when it returns false or throws.
+  void atomically(const std::function<bool()>& work);
 
   /// What commands beside the coordinator want, and what it tells them. Not beyond the store's life.
   [[nodiscard]] ControlTables control();
@@ -59,6 +63,13 @@ class CampaignStore {
   struct Parts;
   explicit CampaignStore(std::unique_ptr<Parts> parts);
   std::unique_ptr<Parts> parts_;
+};
+
+/// A row with all that is stored of it.
+struct StoredRow {
+  ComputedRow computed;
+  std::string host;
+  std::uint32_t pid = 0, attempts = 0;
 };
 
 struct OutcomeCount {
@@ -84,16 +95,6 @@ struct RowSelection {
   bool arrays = true;
 };
 
-struct StoredTrial {
-  TrialRow row;
-  std::string content_hash;  ///< hexadecimal
-  std::string host;
-  std::uint32_t pid = 0;
-  std::uint32_t attempts = 0;
-  std::string started;  ///< UTC
-  double duration_s = 0.0;
-};
-
 /// Reads a campaign's rows, also while another process writes them.
 class CampaignReader {
  public:
@@ -117,8 +118,11 @@ class CampaignReader {
   /// arrays.
   void visit(std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor,
              RowSelection rows = {}) const;
-  /// One row, with how it came about; none where it is not stored.
-  [[nodiscard]] std::optional<StoredTrial> trial(TrialKey key) const;
+  /// The same with provenance and the stored content hash, which is not compared with the row.
+  void visit_stored(std::uint32_t cell, const std::function<void(StoredRow&)>& visitor,
+                    RowSelection rows = {}) const;
+  /// One row; none where it is not stored.
+  [[nodiscard]] std::optional<StoredRow> trial(TrialKey key) const;
   [[nodiscard]] ControlTables control() const;
   /// For SummaryStudy; the reader must outlive it.
   [[nodiscard]] RowSource rows() const;

@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   fatmc::cli::add_status_command(app, exit);
   fatmc::cli::add_query_command(app, exit);
   fatmc::cli::add_digest_command(app, exit);
+  fatmc::cli::add_merge_command(app, exit);
   fatmc::cli::add_migrate_command(app, exit);
   fatmc::cli::add_tables_command(app, exit);
   fatmc::cli::add_replay_command(app, exit);

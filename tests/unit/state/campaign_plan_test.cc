@@ -56,7 +56,7 @@ class CampaignPlanTest : public testing::Test {
 };
 
 TEST_F(CampaignPlanTest, ACellThatGrowsIsLeasedToAWorkerThatWaits) {
-  make({{1, {}}});
+  make({{.repetitions = 1}});
   ask();
   deliver(0, 0);
   commit();
@@ -71,7 +71,7 @@ TEST_F(CampaignPlanTest, ACellThatGrowsIsLeasedToAWorkerThatWaits) {
 }
 
 TEST_F(CampaignPlanTest, ACellThatShrinksIsFinishedAndItsLateRowsAreAcknowledgedAndDropped) {
-  make({{10, {}}});
+  make({{.repetitions = 10}});
   ask();
   deliver(0, 0);
   commit();
@@ -87,7 +87,7 @@ TEST_F(CampaignPlanTest, ACellThatShrinksIsFinishedAndItsLateRowsAreAcknowledged
 }
 
 TEST_F(CampaignPlanTest, ACellThatShrinksForgetsRowsThatWereReceivedButNotYetCommitted) {
-  make({{10, {}}});
+  make({{.repetitions = 10}});
   ask();
   deliver(0, 0);
   deliver(0, 5);
@@ -104,7 +104,7 @@ TEST_F(CampaignPlanTest, ACellThatShrinksForgetsRowsThatWereReceivedButNotYetCom
 TEST_F(CampaignPlanTest, ShrinkingAndGrowingAgainAsksForWhatWasCutOff) {
   IndexRanges stored;
   stored.insert(0, 4);
-  make({{10, stored}});
+  make({{.repetitions = 10, .stored = stored}});
   state_->set_repetitions(0, 2, now_, out_);
   EXPECT_TRUE(state_->finished());
   state_->set_repetitions(0, 4, now_, out_);
@@ -114,8 +114,22 @@ TEST_F(CampaignPlanTest, ShrinkingAndGrowingAgainAsksForWhatWasCutOff) {
   EXPECT_EQ(out_.leases[0].second.first, 2U);
 }
 
+TEST_F(CampaignPlanTest, WhatAnotherShardComputesIsNoPartOfThePlanThatChanges) {
+  IndexRanges elsewhere;
+  elsewhere.insert(5, 10);
+  make({{.repetitions = 10, .elsewhere = elsewhere}});
+  EXPECT_EQ(state_->planned(), 5U);
+  state_->set_repetitions(0, 7, now_, out_);
+  EXPECT_EQ(state_->planned(), 5U);
+  state_->set_repetitions(0, 3, now_, out_);
+  EXPECT_EQ(state_->planned(), 3U);
+}
+
 TEST_F(CampaignPlanTest, CellsOfHigherPriorityGoFirstAndEqualOnesInTheirOrder) {
-  make({{1, {}, 0}, {1, {}, 5}, {1, {}, 0}, {1, {}, -1}});
+  make({{.repetitions = 1},
+        {.repetitions = 1, .priority = 5},
+        {.repetitions = 1},
+        {.repetitions = 1, .priority = -1}});
   std::vector<std::uint32_t> order;
   for (int i = 0; i < 4; ++i) {
     ask();
@@ -126,7 +140,7 @@ TEST_F(CampaignPlanTest, CellsOfHigherPriorityGoFirstAndEqualOnesInTheirOrder) {
 }
 
 TEST_F(CampaignPlanTest, WhilePausedNothingIsLeasedAndWhatIsOutIsStored) {
-  make({{3, {}}});
+  make({{.repetitions = 3}});
   ask();
   state_->pause();
   deliver(0, 0);
@@ -140,7 +154,7 @@ TEST_F(CampaignPlanTest, WhilePausedNothingIsLeasedAndWhatIsOutIsStored) {
 }
 
 TEST_F(CampaignPlanTest, LeasesThatAreOutForLongSayWhereAndHowOftenTheirTrialsWereTried) {
-  make({{1, {}}});
+  make({{.repetitions = 1}});
   ask();
   EXPECT_TRUE(state_->leases(now_, milliseconds(1000)).empty());
   now_ += milliseconds(1500);
