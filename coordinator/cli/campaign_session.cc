@@ -33,12 +33,15 @@ constexpr std::chrono::milliseconds kLauncherPatience{10'000};
 
 // results/last names the databases of the last run, a path a line, for `fatmc tables` without arguments.
 // A convenience, so that failing is no failure of the run.
-void write_last(const std::string& database) {
+void write_last(const SessionOptions& options) {
   const std::string fresh = "results/last.new";
   std::error_code error;
   std::filesystem::create_directories("results", error);
   std::ofstream out(fresh);
-  out << std::filesystem::absolute(database).lexically_normal().string() << "\n";
+  std::vector<std::string> databases = options.earlier;
+  databases.push_back(options.database);
+  for (const std::string& path : databases)
+    out << std::filesystem::absolute(path).lexically_normal().string() << "\n";
   out.close();
   if (!error && !out) error = std::error_code(errno, std::generic_category());
   if (!error) std::filesystem::rename(fresh, "results/last", error);
@@ -57,6 +60,7 @@ void print_stops(const CampaignReader& reader) {
   for (const StopDecision& stop : reader.control().stops()) stops.emplace(stop.cell, stop);
   for (std::uint32_t cell = 0; cell < spec.cells.size(); ++cell) {
     const auto stop = stops.find(cell);
+    if (stop == stops.end() && reader.stored() < spec.trial_count()) continue;  // a shard, or not yet done
     if (stop == stops.end()) {
       std::printf("%s: %s is not known to within %s after all %llu trials; give the cell more\n",
                   spec.cells[cell].name.c_str(), spec.precision->metric.c_str(),
@@ -193,7 +197,7 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
                       build_hash(), state_options);
   CampaignWatch watch(spec, options.database, options.shard.count > 1, state, store);
   if (state.finished()) {
-    write_last(options.database);
+    write_last(options);
     return std::nullopt;
   }
   const std::string endpoint = place.socket.endpoint();
@@ -230,7 +234,7 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
     }
     if (last_is_written || state.stored() == 0) return;
     last_is_written = true;
-    write_last(options.database);
+    write_last(options);
   };
   hooks.on_committed = [&](const StoreRequest& request, const StoreReport& report) {
     watch.on_committed(request, report, server);
@@ -242,7 +246,7 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
   const ServerEnd end = server.run(hooks);
   progress.finish(watch.progress());
   watch.on_end(end == ServerEnd::failed);
-  if (!last_is_written && state.stored() > 0) write_last(options.database);
+  if (!last_is_written && state.stored() > 0) write_last(options);
   workers.stop(kByePatience);
   if (launcher) launcher->stop(kLauncherPatience);
   report_counters(state, server.malformed());
@@ -277,7 +281,7 @@ std::string shell_line(const std::vector<std::string>& words) {
 }
 
 Exit run_session(const CampaignSpec& spec, const SessionOptions& options) {
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("coordinator"));
+  if (spdlog::get("coordinator") == nullptr) spdlog::set_default_logger(spdlog::stderr_logger_mt("coordinator"));
   spdlog::set_level(options.verbose ? spdlog::level::debug : spdlog::level::off);
   {
     const BlockedSignals blocked;

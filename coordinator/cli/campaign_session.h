@@ -15,6 +15,8 @@ namespace fatmc::cli {
 
 struct SessionOptions {
   std::string database;
+  /// Databases that belong to the same run, before this one.
+  std::vector<std::string> earlier;
   std::string endpoint = "tcp://127.0.0.1:*";
   /// Folder of keys; empty: keys of its own when it starts its workers, else a plain socket on the loopback.
   std::string keys;

@@ -1,6 +1,9 @@
 #include "coordinator/store/campaign_control.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include "coordinator/store/campaign_store.h"
 #include "coordinator/store/database_error.h"
@@ -25,6 +28,13 @@ Result<CampaignControl> CampaignControl::open(const std::string& path) {
   }
 }
 
-bool has_coordinator(const std::string& path) { return !WriterLock::take(path).has_value(); }
+// Looks at the lock file of WriterLock without making or removing it, so that a folder may be read-only.
+bool has_coordinator(const std::string& path) {
+  const int descriptor = ::open((path + ".lock").c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const bool held = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0;
+  ::close(descriptor);
+  return held;
+}
 
 }  // namespace fatmc

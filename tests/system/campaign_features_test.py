@@ -185,6 +185,20 @@ class Engine(engine_test.Engine):
         self.assertEqual(process.returncode, 3)
         self.assertNotIn("held by process", self.done("explain", "l.db"))
 
+    def test_several_campaigns_in_one_file_are_run_one_after_another(self):
+        os.mkdir(self.path("sub"))
+        for name in ("one", "two"):
+            self.write(f"sub/{name}.toml", HEAD.replace("features", name) + CELL.format(n=3, rest=""))
+        self.write("all.toml", '[[study]]\nspec = "sub/one.toml"\n[[study]]\nspec = "sub/two.toml"\n')
+        self.assertEqual(self.done("run", "all.toml", "--trials", "5").count("5 of 5 trials"), 2)
+        with open(self.path("results/last")) as file:
+            self.assertEqual([os.path.basename(line.strip()) for line in file], ["one.db", "two.db"])
+        self.refused("lists several", "run", "all.toml", "--db", "x.db")
+        self.write("bad.toml", '[[study]]\nspec = "sub/three.toml"\n')
+        self.refused('bad.toml:2: study.spec: no file "sub/three.toml"', "run", "bad.toml")
+        self.write("sub/two.toml", HEAD.replace("features", "one") + CELL.format(n=3, rest=""))
+        self.refused("names two campaigns", "run", "all.toml")
+
     def test_arrays_are_kept_or_not_as_the_spec_says(self):
         self.spec(CELL.format(n=3, rest="array = 5") + "[keep]\narrays = false\n")
         self.done("run", "spec.toml", "--db", "k.db")
