@@ -70,7 +70,7 @@ Exit compare(const CampaignReader& reader, TrialKey key, const TrialRow& row, co
     return Exit::done;
   }
   std::fprintf(stderr, "fatmc: %s differs from the stored row: content hash %s, stored %s\n", name.c_str(),
-               hash.c_str(), hex(stored->computed.hash).c_str());
+               hash.c_str(), hex(stored->computed.hash).substr(0, 16).c_str());
   return Exit::failed;
 }
 
