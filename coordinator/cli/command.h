@@ -34,6 +34,7 @@ void add_merge_command(CLI::App& app, Exit& exit);
 void add_migrate_command(CLI::App& app, Exit& exit);
 void add_tables_command(CLI::App& app, Exit& exit);
 void add_ssv_command(CLI::App& app, Exit& exit);
+void add_identify_command(CLI::App& app, Exit& exit);
 void add_stability_command(CLI::App& app, Exit& exit);
 
 }  // namespace fatmc::cli

@@ -5,6 +5,7 @@
 
 #include "coordinator/cli/command.h"
 #include "coordinator/cli/estimate_report.h"
+#include "coordinator/cli/output_path.h"
 #include "core/record/column_file.h"
 
 namespace fatmc::cli {
@@ -35,7 +36,7 @@ void add_estimate_command(CLI::App& app, Exit& exit) {
   auto arguments = std::make_shared<EstimateArguments>();
   EstimatorOptions& options = arguments->estimator;
   CLI::App* command = app.add_subcommand("estimate", "Frequency response matrix of a record, or of several.");
-  command->add_option("record", arguments->records, "RECORD.csv, its RECORD.toml beside it")->required();
+  command->add_option("record", arguments->records, "RECORD.csv or RECORD.mat, its RECORD.toml beside it")->required();
   command->add_option("--method", arguments->method,
                       "lpm: fast local polynomial; tlpm: transient LPM; etfe; lrm: local rational; arbitrary: LPM for any "
                       "excitation; robust: several records; welch: conditioned spectra")

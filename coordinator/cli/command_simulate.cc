@@ -1,6 +1,4 @@
 // fatmc simulate: one flight as a record.
-#include <unistd.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <limits>
@@ -9,6 +7,7 @@
 #include "campaigns/base/aircraft_model.h"
 #include "campaigns/base/experiment.h"
 #include "coordinator/cli/command.h"
+#include "coordinator/cli/output_path.h"
 #include "coordinator/input/record_file.h"
 #include "coordinator/input/toml_file.h"
 #include "core/base/text.h"
@@ -93,18 +92,8 @@ std::string record_toml(const Flown& flown) {
 // Nothing but an older record is overwritten, and what cannot be written is said before the flight.
 Status check_targets(const std::string& csv_path, const std::string& toml_path) {
   namespace fs = std::filesystem;
-  const fs::path folder = fs::absolute(csv_path).parent_path();
-  if (!fs::is_directory(folder)) {
-    return fail(Error{csv_path, 0, "-o", "there is no folder " + folder.string() + ", make it or name another"});
-  }
-  if (::access(folder.c_str(), W_OK) != 0) {
-    return fail(Error{csv_path, 0, "-o", "the folder cannot be written to, name another"});
-  }
   for (const std::string& path : {csv_path, toml_path}) {
-    const auto status = fs::symlink_status(path);
-    if (fs::exists(status) && !fs::is_regular_file(status)) {
-      return fail(Error{path, 0, "-o", "is no plain file, name another"});
-    }
+    if (Status status = check_output_file(path); !status) return status;
   }
   if (fs::exists(toml_path)) {
     const Result<Tree> old = read_toml(toml_path);

@@ -1,10 +1,10 @@
 // fatmc ssv: structured singular value of given loops, both bounds.
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <system_error>
 
 #include "coordinator/cli/command.h"
+#include "coordinator/cli/output_path.h"
 #include "coordinator/input/factor_file.h"
 #include "core/base/text.h"
 #include "core/record/column_file.h"
@@ -19,10 +19,7 @@ struct SsvArguments {
 };
 
 Exit run_ssv(const SsvArguments& arguments) {
-  const std::filesystem::path folder = std::filesystem::path(arguments.output).parent_path();
-  if (!folder.empty() && !std::filesystem::is_directory(folder)) {
-    return report(Error{arguments.output, 0, "", "its folder does not exist: make it first"});
-  }
+  if (Status status = check_output_file(arguments.output); !status) return report(status.error());
   const Result<std::vector<LoopFactors>> loops = read_loop_factors(arguments.factors);
   if (!loops) return report(loops.error());
   std::string text = "id,upper,lower,certified\n";

@@ -10,6 +10,7 @@
 
 #include "coordinator/cli/command.h"
 #include "coordinator/cli/estimate_record.h"
+#include "coordinator/cli/output_path.h"
 #include "coordinator/input/nominal_plant_file.h"
 #include "core/base/text.h"
 #include "core/record/column_file.h"
@@ -231,7 +232,7 @@ void add_stability_command(CLI::App& app, Exit& exit) {
   auto arguments = std::make_shared<StabilityArguments>();
   CLI::App* command = app.add_subcommand(
       "stability", "Confidence that the loop of a record is stable: H-infinity and structured singular value a line.");
-  command->add_option("record", arguments->estimate.records, "RECORD.csv, its RECORD.toml beside it")->required();
+  command->add_option("record", arguments->estimate.records, "RECORD.csv or RECORD.mat, its RECORD.toml beside it")->required();
   command
       ->add_option("--nominal", arguments->nominal,
                    "MODEL known to be stable: TOML of kind aircraft, state_space or frf, or an frm.csv")

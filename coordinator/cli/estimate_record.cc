@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 
 #include "coordinator/input/record_file.h"
 #include "core/base/text.h"
@@ -150,14 +149,6 @@ void add_estimate_options(CLI::App& command, EstimateOptions& options) {
       ->capture_default_str();
   command.add_flag("--speed-correction", options.speed_correction,
                    "scale with V_trim / V_mean; V must be an auxiliary channel");
-}
-
-Status check_output_directory(const std::string& directory) {
-  std::error_code ignored;
-  if (std::filesystem::exists(directory, ignored) && !std::filesystem::is_directory(directory, ignored)) {
-    return fail(Error{directory, 0, "-o", "is a file, name a directory"});
-  }
-  return {};
 }
 
 void print_estimate_head(const EstimateOptions& options, const EstimatedRecord& e) {

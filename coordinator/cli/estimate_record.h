@@ -33,9 +33,6 @@ void add_estimate_options(CLI::App& command, EstimateOptions& options);
 /// property that stands in the way, and what would mend it.
 Result<EstimatedRecord> estimate_records(const EstimateOptions& options, EstimationMethod method);
 
-/// Fails where a file stands in the place of the directory: said before the work, not after it.
-Status check_output_directory(const std::string& directory);
-
 /// Two or three lines for the terminal: what the record holds and how it was estimated.
 void print_estimate_head(const EstimateOptions& options, const EstimatedRecord& e);
 

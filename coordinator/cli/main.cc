@@ -23,6 +23,7 @@ int run(int argc, char** argv) {
   add_estimate_command(app, exit);
   add_ssv_command(app, exit);
   add_stability_command(app, exit);
+  add_identify_command(app, exit);
   return run_application(app, exit, argc, argv);
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "campaigns/base/decoder.h"
+#include "coordinator/input/mat_file.h"
 #include "coordinator/input/toml_file.h"
 #include "core/base/text.h"
 #include "core/record/column_file.h"
@@ -13,15 +14,22 @@
 namespace fatmc {
 namespace {
 
-/// Columns of the names under `key`; a name that the CSV lacks is rejected.
-std::vector<int> role(Decoder& table, const char* key, const Record& record, bool required) {
+/// What a file offers: samples under names, and how to say that a name is not among them.
+struct Source {
+  Columns columns;
+  std::string lacks;                ///< "the CSV has no column"
+  std::vector<std::string> offers;  ///< all names that it has
+};
+
+/// Columns of the names under `key`; a name that the file lacks is rejected.
+std::vector<int> role(Decoder& table, const char* key, const Record& record, const Source& source,
+                      bool required) {
   std::vector<int> columns;
-  std::vector<std::string> names =
-      required ? table.texts(key) : table.texts(key, std::vector<std::string>{});
+  std::vector<std::string> names = required ? table.texts(key) : table.texts(key, std::vector<std::string>{});
   for (const std::string& name : names) {
     const int c = record.column(name);
     if (c < 0) {
-      table.reject(key, "the CSV has no column \"" + name + "\", it has " + join(record.names));
+      table.reject(key, source.lacks + " \"" + name + "\", it has " + join(source.offers));
     } else if (std::find(columns.begin(), columns.end(), c) != columns.end()) {
       table.reject(key, "names \"" + name + "\" twice");
     } else {
@@ -31,20 +39,21 @@ std::vector<int> role(Decoder& table, const char* key, const Record& record, boo
   return columns;
 }
 
-Status decode(const Tree& file, Record& record) {
+Status decode(const Tree& file, const Source& source, Record& record) {
   Decoder top(file, "");
   const Tree* tree = top.table("record");
   if (tree == nullptr) return top.finish();
   Decoder table(*tree, "record");
   record.rate_hz = table.has("rate_hz") ? table.real("rate_hz", {.low = 1e-9, .high = 1e9}) : 0.0;
-  record.reference = role(table, "reference", record, false);
-  record.input = role(table, "input", record, true);
-  record.output = role(table, "output", record, true);
-  record.auxiliary = role(table, "auxiliary", record, false);
+  record.reference = role(table, "reference", record, source, false);
+  record.input = role(table, "input", record, source, true);
+  record.output = role(table, "output", record, source, true);
+  record.auxiliary = role(table, "auxiliary", record, source, false);
   constexpr std::int64_t kMost = 1'000'000'000;
   record.period_samples = static_cast<int>(table.integer("period_samples", {.low = 3, .high = kMost}, 0));
   record.periods = static_cast<int>(table.integer("periods", {.low = 1, .high = kMost}, 0));
-  for (const double line : table.reals("excited_lines", 0, {.low = 1.0, .high = 1e9}, std::vector<double>{})) {
+  for (const double line :
+       table.reals("excited_lines", 0, {.low = 1.0, .high = 1e9}, std::vector<double>{})) {
     if (line != std::floor(line)) table.reject("excited_lines", shortest(line) + " is not a whole harmonic");
     record.excited_lines.push_back(static_cast<int>(line));
   }
@@ -69,42 +78,87 @@ Status decode(const Tree& file, Record& record) {
     record.controller_gain = gain;
   }
   record.hold = table.choice("hold", {"zoh", "continuous"}, "zoh") == "zoh" ? Hold::zoh : Hold::continuous;
-  if (table.has("trim_speed_m_s")) record.trim_speed_m_s = table.real("trim_speed_m_s", {.low = 1e-3, .high = 1e4});
+  if (table.has("trim_speed_m_s"))
+    record.trim_speed_m_s = table.real("trim_speed_m_s", {.low = 1e-3, .high = 1e4});
   // Other tables of the file ([environment]) belong to other commands.
   return table.finish();
 }
 
-}  // namespace
-
-std::string record_toml_beside(const std::string& csv_path) {
-  return std::filesystem::path(csv_path).replace_extension(".toml").string();
+/// Names in the roles of a record's TOML, and t; what is no list of names is left to decode().
+std::vector<std::string> channel_names(const Tree& file) {
+  std::vector<std::string> out;
+  const Tree* record = file.find("record");
+  for (const char* key : {"reference", "input", "output", "auxiliary"}) {
+    const Tree* names = record != nullptr && record->table() != nullptr ? record->find(key) : nullptr;
+    if (names == nullptr || names->array() == nullptr) continue;
+    for (const Tree& name : names->array()->items) {
+      if (const auto* text = std::get_if<std::string>(&name.value)) out.push_back(*text);
+    }
+  }
+  out.emplace_back("t");
+  return out;
 }
 
-Result<Record> read_record(const std::string& csv_path, const std::string& toml_path) {
-  const std::string meta = toml_path.empty() ? record_toml_beside(csv_path) : toml_path;
-  if (!std::filesystem::exists(csv_path)) return fail(Error{csv_path, 0, "", "does not exist, name a CSV"});
+Result<Source> read_source(const std::string& path, const Tree& toml) {
+  if (is_mat_file(path)) {
+    Result<MatChannels> channels = read_mat_channels(path, channel_names(toml));
+    if (!channels) return fail(channels.error());
+    return Source{std::move(channels->columns), "the MAT file has no variable",
+                  std::move(channels->variables)};
+  }
+  Result<Columns> columns = read_columns(path);
+  if (!columns) return fail(columns.error());
+  Source source{std::move(*columns), "the CSV has no column", {}};
+  source.offers = source.columns.names;
+  return source;
+}
+
+/// Rate of the column t; a MAT file has samples where a CSV has lines.
+Result<double> rate_of(const Record& record, int t, const std::string& path) {
+  Result<double> rate = rate_from_time(record.samples.col(t), path);
+  if (!rate && is_mat_file(path) && rate.error().line > 0) {
+    Error error = rate.error();
+    error.message = "sample " + std::to_string(error.line - 1) + ": " + error.message;
+    error.line = 0;
+    return fail(error);
+  }
+  return rate;
+}
+
+}  // namespace
+
+std::string record_toml_beside(const std::string& path) {
+  return std::filesystem::path(path).replace_extension(".toml").string();
+}
+
+Result<Record> read_record(const std::string& path, const std::string& toml_path) {
+  const std::string meta = toml_path.empty() ? record_toml_beside(path) : toml_path;
+  if (!std::filesystem::exists(path))
+    return fail(Error{path, 0, "", "does not exist, name a CSV or MAT file"});
   if (!std::filesystem::exists(meta)) {
-    return fail(Error{meta, 0, "", "does not exist: a record needs a TOML with a table [record] that names its input "
-                                   "and output columns (beside the CSV, or --meta FILE)"});
+    return fail(Error{meta, 0, "",
+                      "does not exist: a record needs a TOML with a table [record] that names its input "
+                      "and output columns (beside it, or --meta FILE)"});
   }
   Result<Tree> tree = read_toml(meta);
   if (!tree) return fail(tree.error());
-  Result<Columns> columns = read_columns(csv_path);
-  if (!columns) return fail(columns.error());
+  Result<Source> source = read_source(path, *tree);
+  if (!source) return fail(source.error());
   Record record;
-  record.names = std::move(columns->names);
-  record.samples = std::move(columns->values);
-  if (Status status = decode(*tree, record); !status) return fail(status.error());
+  record.names = source->columns.names;
+  record.samples = std::move(source->columns.values);
+  if (Status status = decode(*tree, *source, record); !status) return fail(status.error());
   if (const int t = record.column("t"); t >= 0) {
-    const Result<double> rate = rate_from_time(record.samples.col(t), csv_path);
+    const Result<double> rate = rate_of(record, t, path);
     if (!rate) return fail(rate.error());
     if (record.rate_hz > 0.0 && std::abs(*rate / record.rate_hz - 1.0) > 1e-3) {
-      return fail(Error{csv_path, 0, "t", "runs at " + significant(*rate, 6) + " Hz, rate_hz in " + meta + " is " +
-                                              shortest(record.rate_hz)});
+      return fail(Error{path, 0, "t",
+                        "runs at " + significant(*rate, 6) + " Hz, rate_hz in " + meta + " is " +
+                            shortest(record.rate_hz)});
     }
     if (record.rate_hz == 0.0) record.rate_hz = *rate;
   }
-  if (Status status = validate(record, csv_path); !status) return fail(status.error());
+  if (Status status = validate(record, path); !status) return fail(status.error());
   return record;
 }
 
@@ -115,8 +169,10 @@ Status complete_period(Record& record, const std::string& file) {
   if (record.period_samples == 0) {
     record.period_samples = find_period(excitation);
     if (record.period_samples == 0) {
-      return fail(Error{file, 0, "period_samples", "the " + what + " does not repeat within the record: the method "
-                                                   "needs two whole periods of a periodic excitation"});
+      return fail(Error{file, 0, "period_samples",
+                        "the " + what +
+                            " does not repeat within the record: the method "
+                            "needs two whole periods of a periodic excitation"});
     }
     if (Status status = validate(record, file); !status) return status;
   }
@@ -126,9 +182,9 @@ Status complete_period(Record& record, const std::string& file) {
   if (referenced) {
     const double error = repetition_error(excitation, record.period_samples);
     if (error > 0.05) {
-      return fail(Error{file, 0, "period_samples", "the reference does not repeat after " +
-                                                       std::to_string(record.period_samples) + " samples (" +
-                                                       significant(100.0 * error, 3) + " % of its variance differs)"});
+      return fail(Error{file, 0, "period_samples",
+                        "the reference does not repeat after " + std::to_string(record.period_samples) +
+                            " samples (" + significant(100.0 * error, 3) + " % of its variance differs)"});
     }
   }
   if (record.excited_lines.empty()) {

@@ -1,4 +1,4 @@
-// A record as files: RECORD.csv with the samples, RECORD.toml with the roles of its columns.
+// A record as files: RECORD.csv or RECORD.mat with the samples, RECORD.toml with the roles of its columns.
 #pragma once
 
 #include <string>
@@ -8,15 +8,17 @@
 
 namespace fatmc {
 
-/// The TOML that belongs to a CSV when none is named: the same path with .toml for the ending.
-std::string record_toml_beside(const std::string& csv_path);
+/// The TOML that belongs to a record when none is named: the same path with .toml for the ending.
+std::string record_toml_beside(const std::string& path);
 
-/// Reads and validates a record. `toml_path` empty: the one beside the CSV. Periods and lines that the TOML leaves
-/// open stay open (see complete_period).
-Result<Record> read_record(const std::string& csv_path, const std::string& toml_path = "");
+/// Reads and validates a record: a CSV, or by its ending a MAT file (mat_file.h says how its channels are
+/// named). `toml_path` empty: the one beside it. Periods and lines that the TOML leaves open stay open (see
+/// complete_period).
+Result<Record> read_record(const std::string& path, const std::string& toml_path = "");
 
-/// Finds period and excited lines where the record leaves them open, from the references or, without any, from the
-/// inputs; checks a period that was given against them. Fails where the record holds no two whole periods.
+/// Finds period and excited lines where the record leaves them open, from the references or, without any,
+/// from the inputs; checks a period that was given against them. Fails where the record holds no two whole
+/// periods.
 Status complete_period(Record& record, const std::string& file);
 
 }  // namespace fatmc
