@@ -42,8 +42,8 @@ std::string pilot_script(const RemoteWorker& worker) {
 SlurmLauncher::SlurmLauncher(SlurmOptions options) : options_(std::move(options)) {}
 
 // A line when something changes, not one a period.
-void SlurmLauncher::say(const std::string& text) {
-  if (text == said_) return;
+void SlurmLauncher::say(const std::string& text, bool again) {
+  if (text == said_ && !again) return;
   said_ = text;
   spdlog::info("{}", text);
   std::fprintf(stderr, "fatmc: %s\n", text.c_str());
@@ -94,6 +94,7 @@ void SlurmLauncher::on_queue(const CommandResult& result, const LaunchView& view
   if (!counted_ && !queue.empty())
     say("adopted " + std::to_string(queue.size()) + " pilots of an earlier coordinator");
   counted_ = true;
+  known_ = queue.size();
   const PilotAction action = decide_pilots(queue, view, options_.pilots, options_.worker.jobs);
   if (action.submit > 0) return submit(action.submit, now);
   if (action.cancel.empty()) return;
@@ -128,11 +129,12 @@ void SlurmLauncher::on_submitted(const CommandResult& result, const LaunchView& 
     rejections_ = 0;
     trust_.submitted(asked_, view.stored);
     return say("submitted " + std::to_string(asked_) + " pilots, job " +
-               result.output.substr(0, result.output.find_first_of("\n;")));
+                   result.output.substr(0, result.output.find_first_of("\n;")),
+               true);
   }
   // It may have been queued all the same: the queue, asked next, will tell.
   say("sbatch failed: " + result.errors);
-  if (++rejections_ >= kRejections && answering_ && view.workers == 0)
+  if (++rejections_ >= kRejections && answering_ && known_ == 0 && view.workers == 0)
     failure_ = "Slurm takes no pilots (" + result.errors + ")";
 }
 

@@ -46,7 +46,7 @@ class SlurmLauncher final : public Launcher {
   void on_submitted(const CommandResult& result, const LaunchView& view, Time now);
   void submit(std::uint64_t count, Time now);
   void rest(Time now);
-  void say(const std::string& text);
+  void say(const std::string& text, bool again = false);
 
   SlurmOptions options_;
   ChildCommand command_;
@@ -54,6 +54,7 @@ class SlurmLauncher final : public Launcher {
   Time next_{};
   bool counted_ = false;     ///< the queue was read at least once
   bool answering_ = true;    ///< the last question was answered
+  std::size_t known_ = 0;    ///< pilots in the queue when it was last read
   std::uint64_t asked_ = 0;  ///< pilots of the submission that runs
   unsigned rejections_ = 0;  ///< submissions in a row that a controller that answers turned away
   PilotTrust trust_;

@@ -115,6 +115,30 @@ class Cluster:
         self.daemons["slurmctld"].send_signal(signal.SIGKILL)
         self.daemons.pop("slurmctld").wait()
 
+    def remember_jobs(self):
+        """Waits until the jobs of now are in slurmctld's state files, which it writes every few seconds."""
+        names = {line.split()[0].encode() for line in self.ask("squeue", "--noheader", "--format=%j").splitlines()}
+        state = self.folder / "state" / "job_state"
+        until(lambda: state.exists() and all(name in state.read_bytes() for name in names), "jobs are saved")
+
+    def forget_jobs(self):
+        """What is left of a controller whose disk is lost."""
+        shutil.rmtree(self.folder / "state")
+        (self.folder / "state").mkdir(mode=0o700)
+
+    def processes(self, name):
+        """Of this cluster's jobs."""
+        own = f"{self.folder}".encode()
+        found = []
+        for line in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+            try:
+                command = line.read_bytes()
+            except OSError:
+                continue
+            if name.encode() in command and own in command:
+                found.append(int(line.parent.name))
+        return found
+
     def daemon(self, program, *arguments):
         with open(self.folder / f"{program}.out", "ab") as out:
             self.daemons[program] = subprocess.Popen([program, *arguments], env=self.environment, cwd=self.folder,

@@ -26,7 +26,7 @@ seed = 12
 
 [[cell]]
 name = "long"
-repetitions = 400
+repetitions = 300
 work = 8000000
 diverge_every = 50
 array = 3
@@ -34,28 +34,27 @@ array = 3
 
 
 class Slurm(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.cluster = Cluster()
-        cls.cluster.start()
-        cls.folder = cls.cluster.folder
-        (cls.folder / "spec.toml").write_text(SPEC)
-        local = cls.fatmc("run", "spec.toml", "--db", "local.db", "--workers", "2")
-        assert local.returncode == 0, local.stderr
-        cls.reference = cls.fatmc("digest", "local.db").stdout
+    reference_digest = None
 
-    @classmethod
-    def tearDownClass(cls):
-        cls.cluster.stop()
+    def setUp(self):
+        # A Slurm for each test: it starts in less than a second, and one test's wreck is not the next one's.
+        self.cluster = Cluster()
+        self.addCleanup(self.cluster.stop)
+        self.cluster.start()
+        self.folder = self.cluster.folder
+        (self.folder / "spec.toml").write_text(SPEC)
 
-    @classmethod
-    def fatmc(cls, *arguments):
-        return subprocess.run([FATMC, *arguments], cwd=cls.folder, env=cls.cluster.environment, capture_output=True,
+    def fatmc(self, *arguments):
+        return subprocess.run([FATMC, *arguments], cwd=self.folder, env=self.cluster.environment, capture_output=True,
                               text=True, timeout=LIMIT_S)
 
-    def tearDown(self):
-        self.cluster.ask("scancel", "--user=root")
-        until(lambda: not self.cluster.jobs(), "no job is left")
+    def reference(self):
+        """The digest of a local run."""
+        if Slurm.reference_digest is None:
+            local = self.fatmc("run", "spec.toml", "--db", "local.db", "--workers", "2")
+            self.assertEqual(local.returncode, 0, local.stderr)
+            Slurm.reference_digest = self.fatmc("digest", "local.db").stdout
+        return Slurm.reference_digest
 
     def words(self, database):
         return ("run", "spec.toml", "--db", database, "--launcher", "slurm", "--workers", "2", "--bind",
@@ -90,7 +89,7 @@ class Slurm(unittest.TestCase):
 
     def finish(self, process, database):
         self.assertEqual(process.wait(timeout=LIMIT_S), 0, self.said())
-        self.assertEqual(self.fatmc("digest", database).stdout, self.reference)
+        self.assertEqual(self.fatmc("digest", database).stdout, self.reference())
         until(lambda: not self.cluster.jobs(), "the pilots have ended")
 
     def test_pilots_are_few_and_leave_the_digest_of_a_local_run(self):
@@ -105,25 +104,37 @@ class Slurm(unittest.TestCase):
         self.wait_for("adopt.db", 20)
         first.kill()
         first.wait()
-        self.assertLess(self.stored("adopt.db"), 400, "the coordinator was to be killed in mid-run")
+        self.assertLess(self.stored("adopt.db"), 300, "the coordinator was to be killed in mid-run")
         self.assertEqual(len(self.cluster.jobs("RUNNING")), 2)
         self.finish(self.start(words), "adopt.db")
         self.assertIn("adopted 2 pilots", self.said())
         self.assertNotIn("submitted", self.said())
         self.assertLessEqual(self.select("adopt.db", "SELECT count(DISTINCT pid) FROM trial"), 2)
 
-    def test_a_killed_controller_stops_no_pilot_and_doubles_none(self):
-        process = self.start(self.words("dead.db"))
-        self.wait_for("dead.db", 20)
+    def lose_controller(self, database, forgets):
+        """Kills slurmctld in mid-run, sees trials flow on, and starts it again with or without its memory."""
+        process = self.start(self.words(database))
+        self.wait_for(database, 20)
+        if not forgets:
+            self.cluster.remember_jobs()
         self.cluster.kill_controller()
-        try:
-            before = self.stored("dead.db")
-            self.assertLess(before, 400, "the controller was to be killed in mid-run")
-            self.wait_for("dead.db", min(before + 40, 400))
-        finally:
-            self.cluster.start_controller()
-        self.finish(process, "dead.db")
+        if forgets:
+            self.cluster.forget_jobs()
+        before = self.stored(database)
+        self.assertLess(before, 300, "the controller was to be killed in mid-run")
+        self.wait_for(database, min(before + 40, 300))
+        self.cluster.start_controller()
+        self.finish(process, database)
+        until(lambda: not self.cluster.processes("fatmc-worker"), "all workers have ended")
+
+    def test_a_killed_controller_stops_no_pilot_and_doubles_none(self):
+        self.lose_controller("dead.db", forgets=False)
         self.assertEqual(self.said().count("submitted"), 1, self.said())
+        self.assertLessEqual(self.select("dead.db", "SELECT count(DISTINCT pid) FROM trial"), 2)
+
+    def test_a_controller_without_memory_makes_ghosts_of_pilots_that_cost_no_trial_and_no_duplicate(self):
+        # Its pilots compute on while no queue knows them, until Slurm finds and ends them as orphans.
+        self.lose_controller("ghosts.db", forgets=True)
 
     def test_pilots_that_are_requeued_or_cancelled_are_replaced(self):
         process = self.start(self.words("hurt.db"))
