@@ -1,4 +1,5 @@
-// The I/O side of a worker: one thread that owns the socket, and a TrialRunner that computes.
+// The I/O side of a worker: one thread that owns the connection, a WorkerSession that decides, a TrialRunner
+// that computes.
 //
 // Rows are kept until the coordinator acknowledges them, and sent again when it does not, when it comes back,
 // or when another takes its place. docs/protocol.md tells the whole conversation.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "campaigns/base/decoder.h"
+#include "core/signal/crest_factor.h"
 
 namespace fatmc {
 namespace {
@@ -15,7 +16,19 @@ Status decode_excitation(const Tree& tree, double rate_hz, Excitation& out) {
   out.ranges = decode_ranges(table, "ranges_hz");
   const std::vector<double> amplitude = table.reals("amplitude_rad_s", 3, {.low = 0.0, .high = 10.0});
   std::copy(amplitude.begin(), amplitude.end(), out.amplitude_rad_s.begin());
+  const std::string phases = table.choice("phases", {"random", "schroeder", "low_crest"}, "random");
+  if (phases == "schroeder") out.phases = Phases::schroeder;
+  if (phases == "low_crest") out.phases = Phases::low_crest;
+  out.zippered = table.choice("lines", {"shared", "zippered"}, "shared") == "zippered";
   if (Status status = table.finish(); !status) return status;
+  if (out.phases == Phases::schroeder && !out.zippered) {
+    const Tree* key = tree.find("phases");
+    const Tree& place = key != nullptr ? *key : tree;
+    return fail(
+        Error{place.file, place.line, "excitation.phases",
+              "schroeder gives all axes the same signal, which no estimator can tell apart: add lines = "
+              "\"zippered\", or write low_crest"});
+  }
   return resolve_excitation(out, rate_hz, tree);
 }
 
@@ -71,6 +84,10 @@ Status resolve_excitation(Excitation& excitation, double rate_hz, const Tree& wh
                       "reaches half the sampling rate, write frequencies below it"});
   }
   excitation.lines = std::move(*lines);
+  if (excitation.zippered && excitation.lines.size() < 3) {
+    return fail(Error{where.file, where.line, "excitation.ranges_hz",
+                      "has fewer lines than axes, which zippered lines cannot be shared among: write more"});
+  }
   return {};
 }
 
@@ -121,15 +138,34 @@ Error locate_flight_error(const Error& error, const Tree& model, const Tree& exp
   return {place.file, place.line, error.key == "speed_m_s" ? "trim.speed_m_s" : error.key, error.message};
 }
 
+std::vector<int> Excitation::lines_of(int axis) const {
+  return zippered ? zippered_lines(lines, axis, 3) : lines;
+}
+
+std::array<Multisine, 3> reference_multisines(const Experiment& experiment, const TrialSeed& trial) {
+  const Excitation& excitation = experiment.excitation;
+  RandomStream stream(trial, "excitation");
+  const auto signal = [&](int axis) {
+    std::vector<int> lines = excitation.lines_of(axis);
+    const double amplitude = excitation.amplitude_rad_s[static_cast<std::size_t>(axis)];
+    if (excitation.phases == Phases::schroeder && amplitude > 0.0) {
+      std::vector<double> amplitudes(lines.size(), amplitude);
+      return schroeder_phases(excitation.period_samples, std::move(lines), std::move(amplitudes));
+    }
+    Multisine random =
+        Multisine::random_phase(excitation.period_samples, std::move(lines), amplitude, stream);
+    return excitation.phases == Phases::low_crest ? lower_crest_factor(random).signal : random;
+  };
+  // Braces: the axes draw one after the other.
+  return {signal(0), signal(1), signal(2)};
+}
+
 Eigen::MatrixX3d reference_signal(const Experiment& experiment, const TrialSeed& trial) {
   const Excitation& excitation = experiment.excitation;
   Eigen::MatrixX3d out(excitation.periods * excitation.period_samples, 3);
-  RandomStream stream(trial, "excitation");
+  const std::array<Multisine, 3> signals = reference_multisines(experiment, trial);
   for (int axis = 0; axis < 3; ++axis) {
-    const std::vector<double> samples =
-        Multisine::random_phase(excitation.period_samples, excitation.lines,
-                                excitation.amplitude_rad_s[static_cast<std::size_t>(axis)], stream)
-            .samples(excitation.periods);
+    const std::vector<double> samples = signals[static_cast<std::size_t>(axis)].samples(excitation.periods);
     out.col(axis) = Eigen::Map<const Eigen::VectorXd>(samples.data(), out.rows());
   }
   return out;

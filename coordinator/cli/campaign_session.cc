@@ -1,5 +1,6 @@
 #include "coordinator/cli/campaign_session.h"
 
+#include <spdlog/cfg/env.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -8,20 +9,17 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <optional>
-#include <set>
+#include <random>
 
-#include "campaigns/registry_summaries.h"
 #include "coordinator/cli/campaign_watch.h"
 #include "coordinator/cli/database_use.h"
 #include "coordinator/cli/progress_line.h"
-#include "coordinator/report/tables.h"
+#include "coordinator/cli/session_summary.h"
 #include "coordinator/server/campaign_server.h"
 #include "coordinator/server/local_workers.h"
 #include "coordinator/state/campaign_state.h"
 #include "coordinator/store/campaign_store.h"
-#include "core/base/text.h"
 #include "proto/build_hash.h"
 #include "proto/key_files.h"
 
@@ -52,80 +50,6 @@ void write_last(const SessionOptions& options) {
   }
 }
 
-// How each cell ended where [stop] says when it is precise enough.
-void print_stops(const CampaignReader& reader) {
-  const CampaignSpec& spec = reader.spec();
-  if (!spec.precision || !spec.precision->half_width) return;
-  std::map<std::uint32_t, StopDecision> stops;
-  for (const StopDecision& stop : reader.control().stops()) stops.emplace(stop.cell, stop);
-  for (std::uint32_t cell = 0; cell < spec.cells.size(); ++cell) {
-    const auto stop = stops.find(cell);
-    if (stop == stops.end() && reader.stored() < spec.trial_count()) continue;  // a shard, or not yet done
-    if (stop == stops.end()) {
-      std::printf("%s: %s is not known to within %s after all %llu trials; give the cell more\n",
-                  spec.cells[cell].name.c_str(), spec.precision->metric.c_str(),
-                  significant(*spec.precision->half_width, 3).c_str(),
-                  static_cast<unsigned long long>(spec.cells[cell].repetitions));
-      continue;
-    }
-    const StopDecision& d = stop->second;
-    std::printf("%s: precise enough after %llu trials, %s %s in [%s, %s] at %s %%\n",
-                spec.cells[cell].name.c_str(), static_cast<unsigned long long>(d.repetitions),
-                d.metric.c_str(), significant(d.mean, 4).c_str(), significant(d.low, 4).c_str(),
-                significant(d.high, 4).c_str(), significant(100.0 * d.level, 4).c_str());
-  }
-}
-
-void print_outcomes(const CampaignReader& reader, const std::string& database) {
-  std::map<std::string, std::uint64_t> counts;
-  std::uint64_t stored = 0;
-  for (const OutcomeCount& count : reader.outcomes()) {
-    counts[count.outcome] += count.trials;
-    stored += count.trials;
-  }
-  std::string text = std::to_string(counts["ok"]) + " ok";
-  for (const auto& [outcome, trials] : counts) {
-    if (outcome != "ok") text += ", " + std::to_string(trials) + " " + outcome;
-  }
-  std::printf("%llu of %llu trials: %s\ndatabase: %s\n", static_cast<unsigned long long>(stored),
-              static_cast<unsigned long long>(reader.spec().trial_count()), text.c_str(), database.c_str());
-  std::fflush(stdout);
-}
-
-Exit print_summary(const std::string& database) {
-  Result<CampaignReader> reader = CampaignReader::open(database);
-  if (!reader) return report(reader.error());
-  print_outcomes(*reader, database);
-  print_stops(*reader);
-  const SummaryStudy* study = find_summary_study(reader->spec().study);
-  if (study == nullptr) return Exit::done;
-  const auto tables = study->tables(reader->spec(), reader->rows());
-  if (!tables) {
-    report(tables.error());
-    return Exit::failed;
-  }
-  // Curves take many rows: they wait for `fatmc tables`.
-  std::vector<TableRow> shown;
-  std::set<std::string> curves;
-  for (const TableRow& row : *tables) {
-    if (row.table.starts_with("Fig."))
-      curves.insert(row.table);
-    else
-      shown.push_back(row);
-  }
-  std::printf("\n");
-  if (tables->empty()) {
-    std::printf("no trial gave an estimate, so there is no table; fatmc query %s --view failures tells why\n",
-                database.c_str());
-    return Exit::done;
-  }
-  print_tables(shown, TableFormat::text);
-  for (const std::string& name : curves) {
-    std::printf("\n%s: fatmc tables %s --only \"%s\"\n", name.c_str(), database.c_str(), name.c_str());
-  }
-  return Exit::done;
-}
-
 void report_counters(const CampaignState& state, std::uint64_t malformed) {
   const StateCounters& c = state.counters();
   if (c.conflicts > 0) {
@@ -136,9 +60,11 @@ void report_counters(const CampaignState& state, std::uint64_t malformed) {
         static_cast<unsigned long long>(c.conflicts));
   }
   spdlog::info(
-      "duplicates {}, conflicts {}, reclaimed leases {}, refused {}, foreign {}, out of plan {}, malformed "
-      "{}",
-      c.duplicates, c.conflicts, c.reclaimed, c.refused_hellos, c.foreign, c.out_of_plan, malformed);
+      "duplicates {}, conflicts {}, reclaimed leases {}, copies {}, quarantined {}, refused {}, foreign {}, "
+      "out of "
+      "plan {}, malformed {}",
+      c.duplicates, c.conflicts, c.reclaimed, c.copied, c.quarantined, c.refused_hellos, c.foreign,
+      c.out_of_plan, malformed);
 }
 
 // What a session needs of this machine, had before the database is touched. In this order: an ipc path is
@@ -175,25 +101,30 @@ Result<Place> take_place(const SessionOptions& options) {
   return Place{std::move(program), std::move(worker_keys), std::move(*lock), std::move(*socket)};
 }
 
-std::vector<PlanCell> plan_of_shard(const CampaignSpec& spec, const Shard& shard, CampaignStore& store) {
-  std::vector<PlanCell> plan = store.plan(spec);
+std::vector<PlanCell> plan_of_shard(const CampaignSpec& spec, const SessionOptions& options,
+                                    CampaignStore& store) {
+  std::vector<PlanCell> plan =
+      store.plan(spec, options.retry_quarantined ? StoredTrials::results : StoredTrials::all);
   for (PlanCell& cell : plan) {
-    const auto [first, last] = shard.range(cell.repetitions);
+    const auto [first, last] = options.shard.range(cell.repetitions);
     cell.elsewhere.insert(0, first);
     cell.elsewhere.insert(last, cell.repetitions);
   }
   return plan;
 }
 
+// Apart from those of the coordinator before, whatever became of the clock meanwhile.
+std::uint64_t random_lease() {
+  std::random_device device;
+  return (std::uint64_t{device()} << 30) + 1;
+}
+
 // The serving part; returns nothing when all is stored.
 std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& options, Place place,
                           CampaignStore& store) {
   StateOptions state_options;
-  state_options.first_lease =
-      static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(
-                                     std::chrono::system_clock::now().time_since_epoch())
-                                     .count());
-  CampaignState state(plan_of_shard(spec, options.shard, store), Welcome{spec.identity(), spec.tree, 0},
+  state_options.first_lease = random_lease();
+  CampaignState state(plan_of_shard(spec, options, store), Welcome{spec.identity(), spec.tree, 0},
                       build_hash(), state_options);
   CampaignWatch watch(spec, options.database, options.shard.count > 1, state, store);
   if (state.finished()) {
@@ -240,7 +171,8 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
     watch.on_committed(request, report, server);
   };
   hooks.on_child = [&] {
-    for (const std::uint32_t pid : workers.reap(state.stored())) server.on_process_ended(pid);
+    for (const EndedProcess& ended : workers.reap(state.counters().results))
+      server.on_process_ended(ended.pid, ended.how);
   };
   hooks.failure = [&] { return launcher ? launcher->failure() : workers.failure(); };
   const ServerEnd end = server.run(hooks);
@@ -281,8 +213,10 @@ std::string shell_line(const std::vector<std::string>& words) {
 }
 
 Exit run_session(const CampaignSpec& spec, const SessionOptions& options) {
-  if (spdlog::get("coordinator") == nullptr) spdlog::set_default_logger(spdlog::stderr_logger_mt("coordinator"));
-  spdlog::set_level(options.verbose ? spdlog::level::debug : spdlog::level::off);
+  if (spdlog::get("coordinator") == nullptr)
+    spdlog::set_default_logger(spdlog::stderr_logger_mt("coordinator"));
+  spdlog::set_level(options.verbose ? spdlog::level::info : spdlog::level::warn);
+  spdlog::cfg::load_env_levels();  // SPDLOG_LEVEL=debug: every message, too
   {
     const BlockedSignals blocked;
     Result<Place> place = take_place(options);
@@ -298,7 +232,10 @@ Exit run_session(const CampaignSpec& spec, const SessionOptions& options) {
     if (opened != Exit::done) return opened;
     if (exit) return *exit;
   }
-  return use_database(options.database, [&] { return print_summary(options.database); });
+  return use_database(options.database, [&] {
+    const Exit printed = print_summary(options.database);
+    return printed == Exit::done ? report_quarantine(options) : printed;
+  });
 }
 
 }  // namespace fatmc::cli

@@ -26,6 +26,8 @@ struct SessionOptions {
   std::function<Result<std::unique_ptr<Launcher>>(const std::string& endpoint)> launcher;
   Shard shard;
   bool verbose = false;
+  /// Trials that were given up are tried again.
+  bool retry_quarantined = false;
   /// The command that resumes this one.
   std::string resume_command;
 };

@@ -21,6 +21,7 @@ MonotonicTime now() { return std::chrono::steady_clock::now().time_since_epoch()
 class NoOutbox final : public Outbox {
  public:
   void send(const WorkerId&, const Message&) override {}
+  void note(const std::string&) override {}
   void store(StoreRequest) override { FATMC_CHECK(false, "no worker, no rows"); }
 };
 

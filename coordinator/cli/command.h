@@ -23,7 +23,10 @@ Exit report(const Error& error);
 
 void add_linearize_command(CLI::App& app, Exit& exit);
 void add_simulate_command(CLI::App& app, Exit& exit);
+void add_design_command(CLI::App& app, Exit& exit);
+void add_noise_command(CLI::App& app, Exit& exit);
 void add_estimate_command(CLI::App& app, Exit& exit);
+void add_predict_command(CLI::App& app, Exit& exit);
 void add_run_command(CLI::App& app, Exit& exit);
 void add_coordinator_command(CLI::App& app, Exit& exit);
 void add_keygen_command(CLI::App& app, Exit& exit);
@@ -39,6 +42,7 @@ void add_resume_command(CLI::App& app, Exit& exit);
 void add_extend_command(CLI::App& app, Exit& exit);
 void add_explain_command(CLI::App& app, Exit& exit);
 void add_ssv_command(CLI::App& app, Exit& exit);
+void add_monitor_command(CLI::App& app, Exit& exit);
 void add_identify_command(CLI::App& app, Exit& exit);
 void add_stability_command(CLI::App& app, Exit& exit);
 

@@ -12,7 +12,7 @@ namespace {
 struct CoordinatorOptions {
   std::string spec, database, endpoint, keys;
   SpecChanges changes;
-  bool verbose = false;
+  bool verbose = false, retry_quarantined = false;
 };
 
 std::vector<std::string> resume_words(const CoordinatorOptions& options) {
@@ -34,6 +34,7 @@ Exit serve(const CoordinatorOptions& options) {
   session.endpoint = options.endpoint;
   session.keys = options.keys;
   session.verbose = options.verbose;
+  session.retry_quarantined = options.retry_quarantined;
   session.resume_command = shell_line(resume_words(options));
   return run_session(*spec, session);
 }
@@ -56,7 +57,9 @@ void add_coordinator_command(CLI::App& app, Exit& exit) {
                       "folder of keys made by `fatmc keygen` (needed: coordinator.key, workers.pub)");
   command->add_option("--db", options->database, "database")->required();
   add_spec_options(*command, options->changes);
-  command->add_flag("--verbose", options->verbose, "log messages to standard error");
+  command->add_flag("--retry-quarantined", options->retry_quarantined,
+                    "try trials again that were given up because they killed their workers");
+  command->add_flag("--verbose", options->verbose, "log what is decided and why to standard error");
   command->callback([options, &exit] { exit = serve(*options); });
 }
 

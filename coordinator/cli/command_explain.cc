@@ -9,6 +9,7 @@
 #include "coordinator/cli/command.h"
 #include "coordinator/cli/database_use.h"
 #include "coordinator/cli/trial_name.h"
+#include "coordinator/state/campaign_state.h"
 #include "coordinator/state/index_ranges.h"
 #include "coordinator/store/campaign_control.h"
 #include "coordinator/store/campaign_store.h"
@@ -42,10 +43,10 @@ std::string advice(const std::string& outcome) {
     return "the drawn parameters make a spec that cannot be flown; a truncated law keeps them inside their "
            "range";
   }
-  if (outcome == "quarantined") {
-    return "its worker ended each time that it was tried, so that it is not tried any more; fatmc replay "
-           "computes it in "
-           "the foreground, under a debugger if need be";
+  if (outcome == kQuarantined) {
+    return "its worker ended each time that it was tried, so that it was given up; fatmc replay computes it "
+           "in the "
+           "foreground, fatmc extend --retry-quarantined tries it again";
   }
   return "fatmc replay computes it again";
 }
@@ -164,7 +165,8 @@ void explain_stored(const Explanation& at, const StoredRow& trial, const std::st
   std::printf("%s: %s%s\n", name.c_str(), row.outcome.c_str(),
               row.detail.empty() ? "" : (": " + row.detail).c_str());
   std::printf("  computed on %s (process %u), begun %s, in %s s; leased %s\n", trial.host.c_str(), trial.pid,
-              utc_text(trial.computed.started_us).c_str(), significant(1e-9 * static_cast<double>(trial.computed.duration_ns), 3).c_str(),
+              utc_text(trial.computed.started_us).c_str(),
+              significant(1e-9 * static_cast<double>(trial.computed.duration_ns), 3).c_str(),
               plural(trial.attempts, "time").c_str());
   std::printf("  seed %llu, build %s, content hash %s\n", static_cast<unsigned long long>(at.spec().seed),
               at.reader.build().substr(0, 12).c_str(), hex(trial.computed.hash).substr(0, 16).c_str());

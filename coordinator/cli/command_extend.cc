@@ -20,7 +20,7 @@ struct ExtendOptions {
   std::string database, cell;
   std::int64_t trials = 0, add = 0;
   unsigned workers = std::max(1U, std::thread::hardware_concurrency());
-  bool verbose = false;
+  bool verbose = false, retry_quarantined = false;
 };
 
 // The spec of the database with the numbers of repetitions that are wanted.
@@ -86,6 +86,7 @@ Exit extend(const ExtendOptions& options) {
   session.database = options.database;
   session.workers = options.workers;
   session.verbose = options.verbose;
+  session.retry_quarantined = options.retry_quarantined;
   session.resume_command =
       shell_line({"fatmc", "extend", options.database, "--workers", std::to_string(options.workers)});
   return run_session(*spec, session);
@@ -111,7 +112,9 @@ void add_extend_command(CLI::App& app, Exit& exit) {
   command->add_option("--workers", options->workers, "worker processes")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
-  command->add_flag("--verbose", options->verbose, "log messages to standard error");
+  command->add_flag("--retry-quarantined", options->retry_quarantined,
+                    "try trials again that were given up because they killed their workers");
+  command->add_flag("--verbose", options->verbose, "log what is decided and why to standard error");
   command->callback(
       [options, &exit] { exit = use_database(options->database, [&] { return extend(*options); }); });
 }

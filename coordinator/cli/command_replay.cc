@@ -26,8 +26,7 @@ Status check_target(const std::string& path) {
   if (path.empty()) return {};
   const std::string toml = record_toml_beside(path);
   if (toml == path) {
-    return fail(
-        Error{path, 0, "-o", "ends in .toml, name a CSV file: its roles go into the TOML beside it"});
+    return fail(Error{path, 0, "-o", "ends in .toml, name a CSV file: its roles go into the TOML beside it"});
   }
   if (Status status = check_output_file(path); !status) return status;
   return check_output_file(toml);

@@ -21,9 +21,9 @@ struct RunOptions {
   unsigned workers = std::max(1U, std::thread::hardware_concurrency());
   LaunchOptions launch;
   SpecChanges changes;
-  bool verbose = false;
+  bool verbose = false, retry_quarantined = false;
   bool dry_run = false;
-  std::string list;                   ///< the file that lists this spec; empty: it was named itself
+  std::string list;                  ///< the file that lists this spec; empty: it was named itself
   std::vector<std::string> earlier;  ///< databases of the specs before it in the list
 };
 
@@ -72,6 +72,7 @@ Exit run_one(const RunOptions& options, const CampaignSpec& campaign) {
   session.earlier = options.earlier;
   if (Status status = use_launcher(options, *spec, session); !status) return report(status.error());
   session.verbose = options.verbose;
+  session.retry_quarantined = options.retry_quarantined;
   session.resume_command = resume_command(options, session.database);
   return run_session(*spec, session);
 }
@@ -79,8 +80,9 @@ Exit run_one(const RunOptions& options, const CampaignSpec& campaign) {
 // Everything is read before anything is run.
 Exit run_list(const RunOptions& options, const std::vector<std::string>& paths) {
   if (!options.database.empty()) {
-    return report(Error{"", 0, "--db", "is for a single campaign, and " + options.spec +
-                                           " lists several; leave it out, each has results/NAME.db"});
+    return report(Error{"", 0, "--db",
+                        "is for a single campaign, and " + options.spec +
+                            " lists several; leave it out, each has results/NAME.db"});
   }
   std::vector<CampaignSpec> specs;
   std::set<std::string> names;
@@ -88,8 +90,9 @@ Exit run_list(const RunOptions& options, const std::vector<std::string>& paths) 
     Result<CampaignSpec> spec = read_campaign(path, options.changes);
     if (!spec) return report(spec.error());
     if (!names.insert(spec->name).second) {
-      return report(Error{path, 0, "campaign.name", "\"" + spec->name + "\" names two campaigns of " + options.spec +
-                                                        ", whose databases would be one; write another"});
+      return report(Error{path, 0, "campaign.name",
+                          "\"" + spec->name + "\" names two campaigns of " + options.spec +
+                              ", whose databases would be one; write another"});
     }
     specs.push_back(std::move(*spec));
   }
@@ -126,7 +129,10 @@ void add_run_command(CLI::App& app, Exit& exit) {
       "    and: fatmc run campaigns/coverage/spec.toml --launcher slurm --workers 40 "
       "--sbatch=--partition=long\n"
       "    and: fatmc run campaigns/coverage/spec.toml --launcher ssh --hosts node1:8,node2:8");
-  command->add_option("SPEC", options->spec, "the campaign (TOML), or a list of several ([[study]] spec = \"FILE\")")->required();
+  command
+      ->add_option("SPEC", options->spec,
+                   "the campaign (TOML), or a list of several ([[study]] spec = \"FILE\")")
+      ->required();
   command->add_option("--db", options->database,
                       "database (default: results/NAME.db, by the campaign's name)");
   command->add_option("--workers", options->workers, "worker processes here, or pilots of Slurm")
@@ -137,7 +143,9 @@ void add_run_command(CLI::App& app, Exit& exit) {
   add_launch_options(*command, options->launch);
   add_spec_options(*command, options->changes);
   command->add_flag("--dry-run", options->dry_run, "list cells and dispersions, run nothing");
-  command->add_flag("--verbose", options->verbose, "log messages to standard error");
+  command->add_flag("--retry-quarantined", options->retry_quarantined,
+                    "try trials again that were given up because they killed their workers");
+  command->add_flag("--verbose", options->verbose, "log what is decided and why to standard error");
   command->callback([options, &exit] { exit = run(*options); });
 }
 

@@ -55,11 +55,27 @@ Result<Record> prepare_record(const EstimateOptions& options, EstimationMethod m
   return read;
 }
 
-Measurement measurement_of(const Record& record) {
-  return {{record.excited_lines, record.period_samples, record.periods, record.rate_hz},
+Measurement measurement_of(const Record& record, const std::vector<double>& band_hz) {
+  Measurement out = {{record.excited_lines, record.period_samples, record.periods, record.rate_hz},
           record.channels(record.output),
           record.channels(record.input),
           record.channels(record.reference)};
+  if (!band_hz.empty()) {
+    out.low_hz = band_hz[0];
+    out.high_hz = band_hz[1];
+  }
+  return out;
+}
+
+Status check_band(const EstimateOptions& options, EstimationMethod method) {
+  const std::vector<double>& band = options.band_hz;
+  if (band.empty()) return {};
+  if (needs_period(method)) {
+    return fail(Error{"", 0, "--band", "goes with methods that take any bin (arbitrary, lrm, welch); " + std::string(name_of(method)) +
+                                           " takes the excited lines"});
+  }
+  if (!(band[0] >= 0.0) || !(band[1] > band[0])) return fail(Error{"", 0, "--band", "is two frequencies in Hz that ascend"});
+  return {};
 }
 
 std::string method_title(EstimationMethod method) {
@@ -82,6 +98,29 @@ std::string method_title(EstimationMethod method) {
   return "";
 }
 
+/// Why the excitation channels do not span all directions, and what to do about it.
+std::string dependence(const Record& record, bool indirect) {
+  const std::vector<int>& channels = indirect ? record.reference : record.input;
+  Eigen::MatrixXd x = record.channels(channels);
+  x.rowwise() -= x.colwise().mean().eval();
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      if (std::abs(x.col(i).dot(x.col(j))) > 0.999 * x.col(i).norm() * x.col(j).norm()) {
+        const auto name = [&](Eigen::Index c) {
+          return record.names[static_cast<std::size_t>(channels[static_cast<std::size_t>(c)])];
+        };
+        return name(j) + " and " + name(i) +
+               " carry the same signal, so that their effects cannot be told apart: give each input phases "
+               "of its own, "
+               "or leave one out";
+      }
+    }
+  }
+  return "the excitation channels depend on each other within its window: give each input phases of its own, "
+         "or take "
+         "a larger --n-e";
+}
+
 /// Periodic methods stand or fall with all their lines; the others leave out lines that nothing excites.
 Status check_lines(const EstimatedRecord& e, const std::string& file) {
   const FrmEstimate& frm = e.response.frm;
@@ -90,7 +129,7 @@ Status check_lines(const EstimatedRecord& e, const std::string& file) {
     const LineStatus status = frm.status[static_cast<std::size_t>(k)];
     if (status == LineStatus::ok || (some && !needs_period(e.method))) continue;
     const std::string what = status == LineStatus::singular_regressor
-                                 ? "the excitation channels depend on each other, name independent ones"
+                                 ? dependence(e.record, frm.indirect)
                                  : "an input does not follow the references, leave it out";
     return fail(Error{file, 0, "line " + std::to_string(frm.lines[static_cast<std::size_t>(k)]), what});
   }
@@ -101,6 +140,7 @@ Status check_lines(const EstimatedRecord& e, const std::string& file) {
 
 Result<EstimatedRecord> estimate_records(const EstimateOptions& options, EstimationMethod method) {
   const std::string& file = options.records.front();
+  if (Status status = check_band(options, method); !status) return fail(status.error());
   EstimatedRecord out;
   out.method = method;
   std::vector<Measurement> measurements;
@@ -109,7 +149,7 @@ Result<EstimatedRecord> estimate_records(const EstimateOptions& options, Estimat
     double speed = 0.0;
     Result<Record> record = prepare_record(options, method, path, &speed);
     if (!record) return fail(record.error());
-    measurements.push_back(measurement_of(*record));
+    measurements.push_back(measurement_of(*record, options.band_hz));
     if (path != options.records.front()) continue;
     out.record = std::move(*record);
     first_speed = speed;
@@ -120,6 +160,7 @@ Result<EstimatedRecord> estimate_records(const EstimateOptions& options, Estimat
     if (error.file.empty()) error.file = file;
     return fail(error);
   }
+  out.records = static_cast<int>(options.records.size());
   out.response = std::move(*response);
   if (Status status = check_lines(out, file); !status) return fail(status.error());
   if (options.speed_correction) {
@@ -134,21 +175,41 @@ Result<EstimatedRecord> estimate_records(const EstimateOptions& options, Estimat
 
 void add_estimate_options(CLI::App& command, EstimateOptions& options) {
   command.add_option("--meta", options.meta, "the records' TOML where it is not beside the CSV");
-  command.add_option("--n-e", options.estimator.n_e, "lines (bins) on each side of a line: 9, lrm 6")
+  command
+      .add_option("--n-e", options.estimator.n_e,
+                  "lines (bins) on each side of a line: 9, which leaves q = 10 for three inputs and order 2; "
+                  "lrm 6, more "
+                  "would reach past a lightly damped mode")
       ->check(CLI::Range(1, 100000));
-  command.add_option("--order", options.estimator.order, "degree of the polynomials")
+  command
+      .add_option(
+          "--order", options.estimator.order,
+          "degree of the polynomials: odd ones gain nothing in a centred window, 4 needs twice the lines")
       ->check(CLI::Range(0, 10))
       ->capture_default_str();
   command
       .add_option(
           "--n-transient", options.estimator.n_transient,
-          "non-excited bins on each side of a line: 5, tlpm with 5 periods and more: (periods + order)/2")
+          "non-excited bins on each side of a line: 5, which leaves 7 degrees of freedom of the noise for "
+          "order "
+          "2; tlpm with 5 periods and more: (periods + order)/2, for q = periods - 1 as the ETFE has it")
       ->check(CLI::Range(1, 100000));
-  command.add_option("--skip-periods", options.skip_periods, "leading periods to leave out")
+  command
+      .add_option("--skip-periods", options.skip_periods,
+                  "leading periods to leave out: none, since transients are estimated; etfe and welch need a "
+                  "steady state")
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str();
+  command.add_option("--band", options.band_hz, "LOW HIGH in Hz, for methods that take any bin: arbitrary, lrm, welch")
+      ->expected(2);
   command.add_flag("--speed-correction", options.speed_correction,
                    "scale with V_trim / V_mean; V must be an auxiliary channel");
+}
+
+std::string estimate_title(const EstimatedRecord& e) {
+  const bool joint = e.method == EstimationMethod::arbitrary && e.records > 1;
+  return method_title(e.method) + (joint ? ", " + std::to_string(e.records) + " records together" : "") +
+         (e.response.frm.indirect ? ", indirect" : ", direct");
 }
 
 void print_estimate_head(const EstimateOptions& options, const EstimatedRecord& e) {
@@ -163,9 +224,8 @@ void print_estimate_head(const EstimateOptions& options, const EstimatedRecord& 
   std::printf("%d %slines, %s to %s Hz\n", frm.line_count(), e.record.periods > 0 ? "excited " : "",
               significant(frm.frequency_hz.front(), 4).c_str(),
               significant(frm.frequency_hz.back(), 4).c_str());
-  std::printf("%s, %s", method_title(e.method).c_str(), frm.indirect ? "indirect" : "direct");
-  if (e.method == EstimationMethod::lpm || e.method == EstimationMethod::arbitrary ||
-      e.method == EstimationMethod::lrm) {
+  std::printf("%s", estimate_title(e).c_str());
+  if (e.method == EstimationMethod::lpm || e.method == EstimationMethod::arbitrary || e.method == EstimationMethod::lrm) {
     std::printf(", order %d, n_E %d", options.estimator.order, options.estimator.n_e_of(e.method));
   }
   std::printf(": q = %d degrees of freedom", frm.q);

@@ -17,12 +17,14 @@ struct EstimateOptions {
   EstimatorOptions estimator;
   int skip_periods = 0;
   bool speed_correction = false;
+  std::vector<double> band_hz;  ///< empty, or lowest and highest frequency of the estimate
 };
 
 struct EstimatedRecord {
   EstimationMethod method = EstimationMethod::lpm;
   Record record;  ///< the first one; the others agree with it in all that is reported
   ResponseEstimate response;
+  int records = 1;            ///< files that went into it
   double speed_factor = 1.0;  ///< by which G has been scaled (3.4)
 };
 
@@ -32,6 +34,9 @@ void add_estimate_options(CLI::App& command, EstimateOptions& options);
 /// Reads the records, completes period and lines where the method needs them, estimates. The error names the line or the
 /// property that stands in the way, and what would mend it.
 Result<EstimatedRecord> estimate_records(const EstimateOptions& options, EstimationMethod method);
+
+/// "fast LPM, indirect"
+std::string estimate_title(const EstimatedRecord& e);
 
 /// Two or three lines for the terminal: what the record holds and how it was estimated.
 void print_estimate_head(const EstimateOptions& options, const EstimatedRecord& e);

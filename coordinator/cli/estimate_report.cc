@@ -5,13 +5,11 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "coordinator/cli/estimate_quality.h"
 #include "core/base/text.h"
-#include "core/stats/confidence.h"
 
 namespace fatmc::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
@@ -28,7 +26,9 @@ std::string transient_convention(const EstimatedRecord& e) {
       return "polynomial of degree order through the n_transient nearest non-excited bins on each side, or where that is "
              "null through the periods + order nearest ones in all" + place;
     case EstimationMethod::etfe: return "none is removed: skip the periods that are not steady";
-    case EstimationMethod::arbitrary: return "polynomial of degree order, estimated with the response";
+    case EstimationMethod::arbitrary:
+      return e.records > 1 ? "none is removed: records start and end at rest"
+                           : "polynomial of degree order, estimated with the response";
     case EstimationMethod::welch: return "none is removed; the mean of each segment is";
     case EstimationMethod::lrm:
       if (!periodic(e)) return "rational of degree order with the response's denominator, estimated with the response";
@@ -43,7 +43,9 @@ std::string window_convention(const EstimatedRecord& e) {
     case EstimationMethod::tlpm:
     case EstimationMethod::etfe: return "each line by itself: as many records as inputs, or one input a line";
     case EstimationMethod::robust: return "each line by itself, least squares over records";
-    case EstimationMethod::arbitrary: return "2 n_e + 1 DFT bins, n_e on each side, shifted at the ends";
+    case EstimationMethod::arbitrary:
+      return std::string("2 n_e + 1 DFT bins") + (e.records > 1 ? " of all records" : "") +
+             ", n_e on each side, shifted at the ends" + (e.records > 1 ? "; fallback_lines by themselves" : "");
     case EstimationMethod::welch: return "each bin of a segment by itself, least squares over segments";
     case EstimationMethod::lrm:
       if (!periodic(e)) return "2 n_e + 1 DFT bins, n_e on each side, shifted at the ends";
@@ -72,7 +74,8 @@ std::string bias_convention(EstimationMethod method) {
     case EstimationMethod::lpm:
       return "|sum s_i (2 d_i / B_3dB)^E| |G|, E = order + 2 (order + 1 for odd orders), s the constant-term row of the "
              "least-squares polynomial at the offsets d_i, B_3dB = 2 sqrt((1 - 1/sqrt 2) |g0 / g2|) from the "
-             "polynomial through the estimated element over the window, linear term dropped";
+             "polynomial through the estimated element over the window, linear term dropped; in windows that are shifted or "
+             "uneven the odd power order + 1 does not cancel and is left out, as in (2.145)";
     case EstimationMethod::tlpm:
     case EstimationMethod::etfe:
       return "of the ratio of noisy spectra, |G| exp(-|U|^2/s_U^2) |1 - rho r| (2.40-2.42, corrected); empty for several "
@@ -99,16 +102,12 @@ Json conventions(const EstimatedRecord& e) {
   }
   out["variance"] = variance_convention(e.method);
   out["bias"] = bias_convention(e.method);
-  return out;
-}
-
-/// Radii of confidence discs in standard deviations, by the F law; null where there is none.
-Json confidence(const EstimatedRecord& e) {
-  if (e.method == EstimationMethod::lrm) return nullptr;
-  Json out = Json::array();
-  for (const double level : {0.75, 0.90, 0.95, 0.99}) {
-    out.push_back({{"level", level}, {"radius_over_sigma", confidence_radius(1.0, level, e.response.frm.q)}});
-  }
+  out["confidence"] = "radius in standard deviations of an element; univariate: one element, bonferroni: all elements at once, "
+                      "simultaneous: every linear combination of elements, joint: vec(E)^H (B kron C_V)^-1 vec(E) <= radius^2";
+  out["noise"] = "standard deviation of the mean spectra of outputs and inputs at the scale of dft";
+  out["nonlinear_distortion"] = "total over noise variance, of y - G u for outputs and of each channel; ~ F(2q, 2 q_noise) where "
+                                "there is noise alone, a large interpolation bias raises it, too";
+  out["three_db_hz"] = "|B_1 - B_2| of (2.142-2.144) by line, output and input, from the polynomial of the bias";
   return out;
 }
 
@@ -221,7 +220,10 @@ std::string estimate_json(const EstimateArguments& arguments, const EstimatedRec
   json["lines_without_estimate"] = left_out;
   json["fallback_lines"] = e.response.fallback;
   json["regressor_condition"] = frm.regressor_condition;
-  json["confidence"] = confidence(e);
+  json["input_condition"] = frm.indirect ? Json(frm.input_condition) : Json();
+  json["confidence"] = confidence_json(e);
+  add_quality(json, e);
+  json["bias_variants"] = arguments.bias_variants ? bias_variants_json(e) : Json();
   json["coherence"] = coherence(e);
   json["notes"] = e.response.notes;
   json["conventions"] = conventions(e);
@@ -231,6 +233,7 @@ std::string estimate_json(const EstimateArguments& arguments, const EstimatedRec
 void print_summary(const EstimateArguments& arguments, const EstimatedRecord& e) {
   const FrmEstimate& frm = e.response.frm;
   print_estimate_head(arguments, e);
+  print_quality(e);
   for (int i = 0; i < frm.n_out; ++i) {
     for (int j = 0; j < frm.n_in; ++j) {
       std::printf("  %s/%s: highest peaks %s\n", e.record.names[index(e.record.output[index(i)])].c_str(),

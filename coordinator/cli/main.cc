@@ -24,10 +24,14 @@ int run(int argc, char** argv) {
   add_extend_command(app, exit);
   add_explain_command(app, exit);
   add_linearize_command(app, exit);
+  add_design_command(app, exit);
   add_simulate_command(app, exit);
   add_estimate_command(app, exit);
+  add_predict_command(app, exit);
+  add_noise_command(app, exit);
   add_ssv_command(app, exit);
   add_stability_command(app, exit);
+  add_monitor_command(app, exit);
   add_identify_command(app, exit);
   return run_application(app, exit, argc, argv);
 }

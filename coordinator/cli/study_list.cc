@@ -23,7 +23,8 @@ Result<std::vector<std::string>> listed_specs(const std::string& path) {
                                "\", write the path of a spec relative to this file");
     }
     const std::string spec = own.lexically_normal().string();
-    if (std::find(out.begin(), out.end(), spec) != out.end()) table.reject("spec", "stands twice, remove one");
+    if (std::find(out.begin(), out.end(), spec) != out.end())
+      table.reject("spec", "stands twice, remove one");
     top.take(table.finish());
     out.push_back(spec);
   }

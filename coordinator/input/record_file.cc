@@ -162,6 +162,22 @@ Result<Record> read_record(const std::string& path, const std::string& toml_path
   return record;
 }
 
+Result<Record> read_stream_roles(const std::string& stream, const std::vector<std::string>& names,
+                                 const std::string& toml_path) {
+  Result<Tree> tree = read_toml(toml_path);
+  if (!tree) return fail(tree.error());
+  Record record;
+  record.names = names;
+  if (Status status = decode(*tree, {{}, stream + " has no column", names}, record); !status) return fail(status.error());
+  const auto needs = [&](const char* key) {
+    return fail(Error{toml_path, 0, std::string("record.") + key, "is needed for samples that arrive one by one"});
+  };
+  if (record.rate_hz == 0.0) return needs("rate_hz");
+  if (record.period_samples == 0) return needs("period_samples");
+  if (record.excited_lines.empty()) return needs("excited_lines");
+  return record;
+}
+
 Status complete_period(Record& record, const std::string& file) {
   const bool referenced = !record.reference.empty();
   const Eigen::MatrixXd excitation = record.channels(referenced ? record.reference : record.input);

@@ -15,7 +15,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kMessagesBetweenLooks = 256;  // at signals and clocks, when messages never end
+constexpr std::uint64_t kMalformedTold = 20;  // later ones are counted alone
+constexpr int kMessagesBetweenLooks = 256;    // at signals and clocks, when messages never end
 
 sigset_t served_signals() {
   sigset_t set;
@@ -46,9 +47,6 @@ struct CampaignServer::Parts {
   BoundSocket bound;
   zmq::socket_t& socket;
   int signals = open_signals();
-  std::vector<StoreRequest> batch;
-  std::size_t batch_rows = 0;
-  MonotonicTime batch_since{};
   explicit Parts(BoundSocket given) : bound(std::move(given)), socket(bound.router()) {}
   ~Parts() { ::close(signals); }
 };
@@ -59,6 +57,7 @@ CampaignServer::CampaignServer(BoundSocket socket, const ServerOptions& options,
       state_(state),
       store_(store),
       parts_(std::make_unique<Parts>(std::move(socket))),
+      commits_(options.commits, [this](std::span<StoreRequest> batch) { return write(batch); }),
       limits_(options.rates) {
   FATMC_CHECK(parts_->signals >= 0, "out of file descriptors");
 }
@@ -76,26 +75,35 @@ void CampaignServer::send(const WorkerId& worker, const Message& message) {
   }
 }
 
-void CampaignServer::store(StoreRequest request) {
-  Parts& parts = *parts_;
-  if (parts.batch_rows + request.rows.size() > options_.batch_rows) commit();
-  if (parts.batch.empty()) parts.batch_since = now();
-  parts.batch_rows += request.rows.size();
-  parts.batch.push_back(std::move(request));
+void CampaignServer::note(const std::string& what) { spdlog::info("{}", what); }
+
+// Rows may have gone out of the plan while they waited.
+std::vector<StoreReport> CampaignServer::write(std::span<StoreRequest> batch) {
+  for (StoreRequest& request : batch) state_.drop_out_of_plan(request);
+  std::vector<StoreReport> reports = store_.commit(batch);
+  committed_.assign(std::make_move_iterator(batch.begin()), std::make_move_iterator(batch.end()));
+  return reports;
 }
 
+void CampaignServer::store(StoreRequest request) { commits_.add(std::move(request), now()); }
+
 void CampaignServer::commit() {
-  Parts& parts = *parts_;
-  if (parts.batch.empty()) return;
-  std::vector<StoreRequest> batch;
-  batch.swap(parts.batch);
-  parts.batch_rows = 0;
-  for (StoreRequest& request : batch) state_.drop_out_of_plan(request);
-  const std::vector<StoreReport> reports = store_.commit(batch);
+  const bool was_in_trouble = !commits_.trouble().empty();
+  const std::vector<StoreReport> reports = commits_.commit(now());
   for (std::size_t i = 0; i < reports.size(); ++i) {
     state_.on_stored(reports[i], now(), *this);
-    if (hooks_ != nullptr && hooks_->on_committed) hooks_->on_committed(batch[i], reports[i]);
+    if (hooks_ != nullptr && hooks_->on_committed) hooks_->on_committed(committed_[i], reports[i]);
   }
+  const bool is_in_trouble = !commits_.trouble().empty();
+  if (is_in_trouble == was_in_trouble) return;
+  if (is_in_trouble) {
+    spdlog::warn(
+        "the database cannot be written ({}): no trial is handed out until it can; make room on its disk",
+        commits_.trouble());
+    return state_.hold_dispatch();
+  }
+  spdlog::warn("the database takes rows again, work goes on");
+  state_.release_dispatch(now(), *this);
 }
 
 void CampaignServer::set_repetitions(std::uint32_t cell, std::uint64_t repetitions) {
@@ -131,21 +139,19 @@ void CampaignServer::receive() {
     if (!limits_.admit(id.to_string(), frame.size(), now())) continue;
     Result<Message> message = decode(frame.to_string_view());
     if (!message) {
-      ++malformed_;
-      spdlog::warn("{}", message.error().text());
+      if (malformed_++ < kMalformedTold) spdlog::warn("{}", message.error().text());
       continue;
     }
+    // While rows cannot be kept, their workers keep them; memory would not.
+    if (!commits_.trouble().empty() && std::holds_alternative<Results>(*message)) continue;
     spdlog::debug("from {}: {}", id.to_string().substr(0, 8), message_name(*message));
     state_.on_message(id.to_string(), std::move(*message), now(), *this);
-    if (state_.all_received() || parts_->batch_rows >= options_.batch_rows) commit();
+    if (commits_.is_due(now()) || (state_.all_received() && commits_.may_try(now()))) commit();
   }
 }
 
 std::chrono::milliseconds CampaignServer::wait_time() const {
-  if (parts_->batch.empty()) return options_.tick;
-  const auto left =
-      std::chrono::ceil<std::chrono::milliseconds>(parts_->batch_since + options_.batch_wait - now());
-  return std::clamp(left, std::chrono::milliseconds(0), options_.tick);
+  return commits_.empty() ? options_.tick : std::min(commits_.until_due(now()), options_.tick);
 }
 
 ServerEnd CampaignServer::run(const ServerHooks& hooks) {
@@ -168,7 +174,7 @@ ServerEnd CampaignServer::run(const ServerHooks& hooks) {
       }
     }
     receive();
-    if (!parts_->batch.empty() && now() - parts_->batch_since >= options_.batch_wait) commit();
+    if (commits_.is_due(now())) commit();
     if (now() - last_tick >= options_.tick) {
       last_tick = now();
       state_.on_tick(last_tick, *this);
@@ -197,8 +203,9 @@ void CampaignServer::say_bye(bool finished) {
   }
 }
 
-void CampaignServer::on_process_ended(std::uint32_t pid) {
-  for (const WorkerId& worker : state_.workers_of_pid(pid, host_name())) state_.on_gone(worker, now(), *this);
+void CampaignServer::on_process_ended(std::uint32_t pid, const std::string& how) {
+  for (const WorkerId& worker : state_.workers_of_pid(pid, host_name()))
+    state_.on_gone(worker, how, now(), *this);
 }
 
 }  // namespace fatmc

@@ -3,6 +3,9 @@
 // Messages go to CampaignState, whose decisions it carries out. Rows are gathered and committed in one
 // transaction as soon as there are 100, or the oldest has waited for 50 ms, or nothing more can come; only
 // then are they acknowledged. Messages that are malformed or too large are counted and dropped.
+//
+// When the database cannot take rows (disk full, I/O error), dispatch pauses, rows that come are left with
+// their workers, who send them again, and the commit is repeated until it succeeds.
 #pragma once
 
 #include <signal.h>
@@ -13,6 +16,7 @@
 #include <string>
 
 #include "coordinator/server/bound_socket.h"
+#include "coordinator/server/group_commit.h"
 #include "coordinator/server/peer_limits.h"
 #include "coordinator/state/campaign_state.h"
 #include "coordinator/store/campaign_store.h"
@@ -21,8 +25,7 @@
 namespace fatmc {
 
 struct ServerOptions {
-  std::size_t batch_rows = kMaxRowsPerMessage;
-  std::chrono::milliseconds batch_wait{50};
+  GroupCommitOptions commits;
   std::chrono::milliseconds tick{100};
   RateLimits rates;
 };
@@ -48,13 +51,13 @@ class CampaignServer : private Outbox {
   ~CampaignServer() override;
 
   /// Serves until all is stored, a signal comes, or a hook reports a failure; then says BYE to all workers.
-  /// Throws when the database fails.
+  /// Throws when the database fails for good (damaged, gone).
   ServerEnd run(const ServerHooks& hooks);
   /// CampaignState::set_repetitions, pause and resume, from inside a hook.
   void set_repetitions(std::uint32_t cell, std::uint64_t repetitions);
   void set_paused(bool paused);
-  /// A process of this host has ended.
-  void on_process_ended(std::uint32_t pid);
+  /// A process of this host has ended; `how` it died, empty when it left in peace.
+  void on_process_ended(std::uint32_t pid, const std::string& how);
   /// Messages that could not be read.
   [[nodiscard]] std::uint64_t malformed() const { return malformed_; }
   /// Messages dropped unread, of peers that send too much.
@@ -65,8 +68,10 @@ class CampaignServer : private Outbox {
   struct Parts;
   void send(const WorkerId& worker, const Message& message) override;
   void store(StoreRequest request) override;
+  void note(const std::string& what) override;
   void receive();
   void commit();
+  std::vector<StoreReport> write(std::span<StoreRequest> batch);
   void say_bye(bool finished);
   [[nodiscard]] std::chrono::milliseconds wait_time() const;
 
@@ -74,7 +79,9 @@ class CampaignServer : private Outbox {
   CampaignState& state_;
   CampaignStore& store_;
   std::unique_ptr<Parts> parts_;
-  const ServerHooks* hooks_ = nullptr;  // of run()
+  const ServerHooks* hooks_ = nullptr;   // of run()
+  std::vector<StoreRequest> committed_;  // by the last commit
+  GroupCommit commits_;
   PeerLimits limits_;
   std::uint64_t malformed_ = 0;
 };

@@ -43,6 +43,13 @@ std::string how_it_ended(int status) {
   return "exit code " + std::to_string(WEXITSTATUS(status));
 }
 
+// Done, wrong use, interrupted (worker/worker.h).
+bool left_in_peace(int status) {
+  if (!WIFEXITED(status)) return false;
+  const int code = WEXITSTATUS(status);
+  return code == 0 || code == 2 || code == 3;
+}
+
 }  // namespace
 
 Result<std::string> worker_program_beside_this() {
@@ -96,26 +103,27 @@ void LocalWorkers::spawn() {
   processes_.push_back(pid);
 }
 
-std::vector<std::uint32_t> LocalWorkers::reap(std::uint64_t stored) {
-  std::vector<std::uint32_t> ended;
+std::vector<EndedProcess> LocalWorkers::reap(std::uint64_t done) {
+  std::vector<EndedProcess> ended;
   const std::vector<pid_t> before = processes_;
   for (const pid_t pid : before) {
     int status = 0;
     if (::waitpid(pid, &status, WNOHANG) != pid) continue;
     std::erase(processes_, pid);
-    ended.push_back(static_cast<std::uint32_t>(pid));
-    judge(status, stored);
+    ended.push_back(
+        {static_cast<std::uint32_t>(pid), left_in_peace(status) ? std::string() : how_it_ended(status)});
+    judge(status, done);
   }
   return ended;
 }
 
-void LocalWorkers::judge(int status, std::uint64_t stored) {
+void LocalWorkers::judge(int status, std::uint64_t done) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 2) {  // it said why, and would say it again
     if (processes_.empty()) failure_ = "no worker can run this campaign";
     return;
   }
-  crashes_ = stored > stored_at_last_crash_ ? 1 : crashes_ + 1;
-  stored_at_last_crash_ = stored;
+  crashes_ = done > done_at_last_crash_ ? 1 : crashes_ + 1;
+  done_at_last_crash_ = done;
   if (crashes_ >= options_.crashes_in_vain) {
     failure_ = "workers ended " + std::to_string(crashes_) +
                " times without a trial done in between, at last by " + how_it_ended(status);

@@ -21,8 +21,14 @@ struct LocalWorkerOptions {
   std::optional<WorkerKeys> keys;
   unsigned count = 1;
   bool verbose = false;
-  /// Crashes without a single trial stored in between after which restarting is given up.
-  unsigned crashes_in_vain = 5;
+  /// Crashes without a single trial done in between after which restarting is given up: ten trials in a row
+  /// that each kill three workers.
+  unsigned crashes_in_vain = 30;
+};
+
+struct EndedProcess {
+  std::uint32_t pid = 0;
+  std::string how;  ///< it died; empty when it left in peace
 };
 
 /// Single-threaded: all calls from the server's thread.
@@ -36,9 +42,9 @@ class LocalWorkers {
 
   /// Throws std::system_error when a process cannot be started.
   void start();
-  /// Collects processes that ended and replaces those that crashed. Returns the ids of those that ended.
-  /// `stored`: trials stored so far, from which it sees whether restarting gets anywhere.
-  std::vector<std::uint32_t> reap(std::uint64_t stored);
+  /// Collects processes that ended and replaces those that crashed. Returns those that ended.
+  /// `done`: trials done so far, from which it sees whether restarting gets anywhere.
+  std::vector<EndedProcess> reap(std::uint64_t done);
   /// Why no worker can be had any more; empty while they can.
   [[nodiscard]] const std::string& failure() const { return failure_; }
   /// Waits for all to end by themselves (they were told BYE), and ends those that do not within `patience`.
@@ -49,12 +55,12 @@ class LocalWorkers {
 
  private:
   void spawn();
-  void judge(int status, std::uint64_t stored);
+  void judge(int status, std::uint64_t done);
 
   LocalWorkerOptions options_;
   int keys_ = -1;
   std::vector<pid_t> processes_;
-  std::uint64_t stored_at_last_crash_ = 0;
+  std::uint64_t done_at_last_crash_ = 0;
   unsigned crashes_ = 0;
   std::uint64_t restarts_ = 0;
   std::string failure_;

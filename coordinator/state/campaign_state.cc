@@ -53,9 +53,9 @@ void CampaignState::on_message(const WorkerId& worker, Message message, Monotoni
     on_heartbeat(worker, *heartbeat, now, out);
   } else if (const auto* refused = std::get_if<Refused>(&message)) {
     last_refusal_ = refused->reason;
-    on_gone(worker, now, out);
+    on_gone(worker, refused->code == Refused::Code::trial_threw ? refused->reason : std::string(), now, out);
   } else if (std::holds_alternative<Bye>(message)) {
-    on_gone(worker, now, out);
+    on_gone(worker, {}, now, out);
   } else {
     ++counters_.unexpected;
   }
@@ -65,6 +65,7 @@ void CampaignState::on_hello(const WorkerId& worker, const Hello& hello, Monoton
   const auto refuse = [&](Refused::Code code, std::string reason) {
     ++counters_.refused_hellos;
     last_refusal_ = reason;
+    out.note("refused worker " + worker.substr(0, 8) + " of host " + hello.host + ": " + reason);
     out.send(worker, Refused{code, std::move(reason)});
   };
   if (hello.incarnation != worker)
@@ -79,6 +80,11 @@ void CampaignState::on_hello(const WorkerId& worker, const Hello& hello, Monoton
                                             " is not the coordinator's " + build_.substr(0, 12) +
                                             "; use programs of one build");
   }
+  suspects_.absolve(worker);
+  // A worker that says HELLO anew has dropped what it had not begun: its leases are free.
+  if (workers_.contains(worker)) forget(worker, {}, out);
+  out.note("worker " + worker.substr(0, 8) + " joins: host " + hello.host + ", process " +
+           std::to_string(hello.pid) + ", " + std::to_string(hello.jobs) + " at a time");
   WorkerState& state = workers_[worker];
   state.hello = hello;
   state.last_heard = now;
@@ -101,49 +107,6 @@ void CampaignState::on_credit(const WorkerId& worker, const Credit& credit, Mono
   state.idle = std::min(credit.idle, state.hello.jobs);
   state.waiting = credit.queued == 0;
   if (state.waiting) grant(worker, state, now, out);
-}
-
-bool CampaignState::grant(const WorkerId& worker, WorkerState& state, MonotonicTime now, Outbox& out) {
-  const std::uint32_t index = next_cell();
-  if (paused_ || index == cells_.size()) return false;
-  CellState* const cell = &cells_[index];
-  const double prefetch_ns = std::chrono::duration<double, std::nano>(options_.prefetch_below).count();
-  if (state.idle == 0 && !(cell->timed > 0 && cell->mean_trial_ns < prefetch_ns)) return false;
-  const auto [first, last] = cell->pending.take(lease_size(state, *cell));
-  pending_ -= last - first;
-  const std::uint64_t id = next_lease_++;
-  LeaseState& lease = leases_[id];
-  lease.worker = worker;
-  lease.cell = index;
-  lease.missing.insert(first, last);
-  lease.since = lease.last_mentioned = now;
-  state.newest_lease = id;
-  state.waiting = false;
-  out.send(worker, Lease{id, lease.cell, first, last});
-  return true;
-}
-
-// Guided self-scheduling (Polychronopoulos and Kuck 1987, with half of the share): a worker gets half of its
-// fair part of what is left, so that leases shrink towards the end, but no more than `target_lease` of work.
-std::uint64_t CampaignState::lease_size(const WorkerState& worker, const CellState& cell) const {
-  const std::uint64_t least = std::max<std::uint64_t>(worker.idle, 1);
-  if (cell.timed == 0) return least;  // one trial a thread tells how long they take
-  std::uint64_t threads = 0;
-  for (const auto& [id, other] : workers_) threads += other.hello.jobs;
-  const double jobs = worker.hello.jobs;
-  const double guided =
-      static_cast<double>(pending_) * jobs / (2.0 * static_cast<double>(std::max<std::uint64_t>(threads, 1)));
-  const double target = std::chrono::duration<double, std::nano>(options_.target_lease).count() * jobs /
-                        std::max(cell.mean_trial_ns, 1.0);
-  const double size = std::min({guided, target, static_cast<double>(options_.largest_lease)});
-  return std::max(least, static_cast<std::uint64_t>(size));
-}
-
-void CampaignState::serve_waiting(MonotonicTime now, Outbox& out) {
-  for (auto& [id, state] : workers_) {
-    if (pending_ == 0) return;
-    if (state.waiting) grant(id, state, now, out);
-  }
 }
 
 void CampaignState::on_results(const WorkerId& worker, Results results, MonotonicTime now, Outbox& out) {
@@ -184,12 +147,16 @@ void CampaignState::take_row(const WorkerId& worker, const ComputedRow& row, Mon
   const auto [cell_index, repetition] = row.row.key;
   CellState& cell = cells_[cell_index];
   measure(cell, row.duration_ns);
+  suspects_.clear(row.row.key);
   for (auto lease = leases_.begin(); lease != leases_.end();) {
-    if (lease->second.cell == cell_index && lease->second.worker == worker) {
-      if (lease->second.missing.contains(repetition)) lease->second.last_mentioned = now;
-      lease->second.missing.erase(repetition);
+    LeaseState& held = lease->second;
+    if (held.cell != cell_index || !held.missing.contains(repetition)) {
+      ++lease;
+      continue;
     }
-    lease = lease->second.missing.empty() ? leases_.erase(lease) : std::next(lease);
+    if (held.worker == worker) held.last_mentioned = now;
+    held.missing.erase(repetition);  // of a copy, too: it would be done in vain
+    lease = held.missing.empty() ? leases_.erase(lease) : std::next(lease);
   }
   if (cell.stored.contains(repetition) || cell.received.contains(repetition)) return;
   if (cell.pending.contains(repetition)) {
@@ -198,6 +165,7 @@ void CampaignState::take_row(const WorkerId& worker, const ComputedRow& row, Mon
   }
   cell.received.insert(repetition);
   ++received_;
+  ++counters_.results;
 }
 
 void CampaignState::measure(CellState& cell, std::uint64_t duration_ns) {
@@ -222,54 +190,14 @@ void CampaignState::on_stored(const StoreReport& report, MonotonicTime, Outbox& 
       cell.stored.insert(key.repetition);
       ++stored_;
     }
-  }
-  out.send(report.worker, Ack{report.sequence});
-}
-
-void CampaignState::reclaim(std::uint64_t id) {
-  const auto lease = leases_.find(id);
-  CellState& cell = cells_[lease->second.cell];
-  ++counters_.reclaimed;
-  for (const auto& [first, last] : lease->second.missing.ranges()) {
-    for (std::uint64_t index = first; index < last; ++index) {
-      if (cell.stored.contains(index) || cell.received.contains(index) || cell.pending.contains(index))
-        continue;
-      cell.pending.insert(index);
-      ++cell.retries[index];
-      ++pending_;
+    cell.retries.erase(key.repetition);
+    if (outcome == StoreOutcome::conflict) {
+      out.note("ALARM: worker " + report.worker.substr(0, 8) + " brings another result of trial " +
+               std::to_string(key.repetition) + " of cell " + std::to_string(key.cell) +
+               " than is stored; the stored one stays");
     }
   }
-  const auto worker = workers_.find(lease->second.worker);
-  if (worker != workers_.end() && worker->second.newest_lease == id) worker->second.newest_lease = 0;
-  leases_.erase(lease);
-}
-
-void CampaignState::forget(const WorkerId& worker) {
-  std::vector<std::uint64_t> held;
-  for (const auto& [id, lease] : leases_) {
-    if (lease.worker == worker) held.push_back(id);
-  }
-  for (const std::uint64_t id : held) reclaim(id);
-  workers_.erase(worker);
-}
-
-void CampaignState::on_gone(const WorkerId& worker, MonotonicTime now, Outbox& out) {
-  forget(worker);
-  serve_waiting(now, out);
-}
-
-void CampaignState::on_tick(MonotonicTime now, Outbox& out) {
-  std::vector<WorkerId> silent;
-  for (const auto& [id, worker] : workers_) {
-    if (now - worker.last_heard > options_.lease_timeout) silent.push_back(id);
-  }
-  for (const WorkerId& id : silent) forget(id);
-  std::vector<std::uint64_t> overdue;
-  for (const auto& [id, lease] : leases_) {
-    if (now - lease.last_mentioned > options_.lease_timeout) overdue.push_back(id);
-  }
-  for (const std::uint64_t id : overdue) reclaim(id);
-  serve_waiting(now, out);
+  if (!report.worker.empty()) out.send(report.worker, Ack{report.sequence});
 }
 
 std::vector<WorkerId> CampaignState::workers() const {

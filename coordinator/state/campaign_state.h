@@ -9,6 +9,9 @@
 // covers a dead worker as well as a LEASE that was lost on the way. Results are welcome from whoever brings
 // them: the store drops a row that it has, so that lease expiry can only cost work and never a result.
 //
+// Idle workers at the end of a run get copies of what is still out, so that a slow or silent worker makes it
+// at most one trial longer. A trial over which three workers died gets the outcome "quarantined".
+//
 // Invariants (tests/unit/state): what was acknowledged is stored; a trial is stored once; while a worker
 // lives, the run ends.
 #pragma once
@@ -16,11 +19,13 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "campaigns/base/campaign_spec.h"
 #include "coordinator/state/index_ranges.h"
+#include "coordinator/state/suspects.h"
 #include "proto/wire.h"
 
 namespace fatmc {
@@ -48,8 +53,11 @@ struct LeaseView {
 
 struct StateOptions {
   std::chrono::milliseconds heartbeat{500};
-  /// Four heartbeats: one may be late and one lost before work is done twice.
-  std::chrono::milliseconds lease_timeout{2000};
+  /// Found within two heartbeats, ticks included. Workers speak twice a heartbeat, so that two messages may
+  /// be lost before work is done twice.
+  std::chrono::milliseconds lease_timeout{900};
+  /// Over how many dead workers a trial is quarantined.
+  std::size_t deaths_to_quarantine = 3;
   /// A lease should keep a worker busy this long: many times the round trip (below 1 ms), short against a
   /// run.
   std::chrono::milliseconds target_lease{250};
@@ -62,9 +70,12 @@ struct StateOptions {
   std::uint64_t first_lease = 1;
 };
 
+/// Outcome of a trial that kills its workers; the row has no results, and a real one may take its place.
+inline constexpr const char* kQuarantined = "quarantined";
+
 /// Rows on their way to the store.
 struct StoreRequest {
-  WorkerId worker;
+  WorkerId worker;  ///< empty: the coordinator's own
   std::uint64_t sequence = 0;
   std::string host;
   std::uint32_t pid = 0;
@@ -87,9 +98,12 @@ class Outbox {
   virtual void send(const WorkerId& worker, const Message& message) = 0;
   /// To be answered by CampaignState::on_stored() once committed.
   virtual void store(StoreRequest request) = 0;
+  /// A decision and its reason, for the log.
+  virtual void note(const std::string& /*what*/) {}
 };
 
 struct StateCounters {
+  std::uint64_t results = 0;         ///< trials whose result came in this run
   std::uint64_t duplicates = 0;      ///< rows that the database had
   std::uint64_t conflicts = 0;       ///< alarm: same trial, other result; never overwritten
   std::uint64_t out_of_plan = 0;     ///< rows of no cell or repetition of the plan
@@ -97,6 +111,8 @@ struct StateCounters {
   std::uint64_t refused_hellos = 0;  ///< another protocol or build
   std::uint64_t unexpected = 0;      ///< messages that a worker has no business sending
   std::uint64_t reclaimed = 0;       ///< leases taken back
+  std::uint64_t copied = 0;          ///< leases of trials that were out already
+  std::uint64_t quarantined = 0;     ///< trials given up in this run
 };
 
 class CampaignState {
@@ -105,8 +121,8 @@ class CampaignState {
 
   void on_message(const WorkerId& worker, Message message, MonotonicTime now, Outbox& out);
   void on_stored(const StoreReport& report, MonotonicTime now, Outbox& out);
-  /// The worker's process has ended: its leases are free at once.
-  void on_gone(const WorkerId& worker, MonotonicTime now, Outbox& out);
+  /// The worker's process has ended: its leases are free at once. `how` it died; empty when it left in peace.
+  void on_gone(const WorkerId& worker, const std::string& how, MonotonicTime now, Outbox& out);
   /// Time passes: takes back what is overdue. To be called once a heartbeat or more often.
   void on_tick(MonotonicTime now, Outbox& out);
 
@@ -122,6 +138,9 @@ class CampaignState {
   [[nodiscard]] bool paused() const { return paused_; }
   /// Leases that have been out for `age` or longer, oldest first.
   [[nodiscard]] std::vector<LeaseView> leases(MonotonicTime now, std::chrono::milliseconds age) const;
+  /// While the store cannot write, nothing is leased: rows could not be kept.
+  void hold_dispatch() { held_ = true; }
+  void release_dispatch(MonotonicTime now, Outbox& out);
 
   [[nodiscard]] bool finished() const { return stored_ == planned_; }
   [[nodiscard]] std::uint64_t planned() const { return planned_; }
@@ -148,7 +167,8 @@ class CampaignState {
     Hello hello;
     MonotonicTime last_heard{};
     std::uint64_t newest_lease = 0;
-    bool waiting = false;  ///< asked for work when there was none
+    std::uint64_t alone = 0;  ///< a lease beside which it gets no other
+    bool waiting = false;     ///< asked for work when there was none
     std::uint32_t idle = 0;
   };
   struct LeaseState {
@@ -157,6 +177,9 @@ class CampaignState {
     IndexRanges missing;
     MonotonicTime since{};
     MonotonicTime last_mentioned{};
+    std::uint64_t copy_of = 0;    ///< the lease whose trials these are, too
+    MonotonicTime last_copied{};  ///< when its trials were last leased, to it or as a copy
+    std::uint32_t copies = 0;
   };
 
   void on_hello(const WorkerId& worker, const Hello& hello, MonotonicTime now, Outbox& out);
@@ -166,9 +189,20 @@ class CampaignState {
   void take_row(const WorkerId& worker, const ComputedRow& row, MonotonicTime now);
   void measure(CellState& cell, std::uint64_t duration_ns);
   void reclaim(std::uint64_t lease);
-  void forget(const WorkerId& worker);
+  void forget(const WorkerId& worker, const std::string& how, Outbox& out);
   [[nodiscard]] std::uint32_t next_cell() const;
+  void quarantine(TrialKey trial, Outbox& out);
   bool grant(const WorkerId& worker, WorkerState& state, MonotonicTime now, Outbox& out);
+  bool grant_copy(const WorkerId& worker, WorkerState& state, MonotonicTime now, Outbox& out);
+  struct TrialRange {
+    std::uint64_t first = 0, last = 0;
+  };
+  std::optional<TrialRange> next_range(const WorkerId& worker, const WorkerState& state, std::uint32_t cell);
+  LeaseState& lease(const WorkerId& worker, WorkerState& state, std::uint32_t cell, TrialRange range,
+                    MonotonicTime now, Outbox& out);
+  [[nodiscard]] bool is_short(const CellState& cell) const;
+  [[nodiscard]] bool may_copy(const LeaseState& lease, MonotonicTime now) const;
+  [[nodiscard]] bool holds_a_lease(const WorkerId& worker) const;
   void serve_waiting(MonotonicTime now, Outbox& out);
   [[nodiscard]] std::uint64_t lease_size(const WorkerState& worker, const CellState& cell) const;
 
@@ -180,6 +214,9 @@ class CampaignState {
   StateOptions options_;
   std::uint64_t next_lease_;
   bool paused_ = false;
+  Suspects suspects_;
+  WorkerId draining_;  ///< a worker that gets nothing until it is free for a trial that must run alone
+  bool held_ = false;
   std::uint64_t planned_ = 0, stored_ = 0, received_ = 0, pending_ = 0;
   StateCounters counters_;
   std::string last_refusal_;

@@ -30,8 +30,8 @@ struct CampaignStore::Parts {
   WriterLock lock;
   std::string path;
   SQLite::Database db;
-  std::optional<SQLite::Statement> insert_trial, find_hash, insert_metric, insert_array, insert_name,
-      find_name;
+  std::optional<SQLite::Statement> insert_trial, find_hash, remove_trial, insert_metric, insert_array,
+      insert_name, find_name;
   std::map<std::string, std::int64_t, std::less<>> names;
   bool in_transaction = false;  ///< of atomically()
 
@@ -43,14 +43,15 @@ struct CampaignStore::Parts {
   // Leaves a single file that may be copied, unless a reader is in it at this moment.
   ~Parts() {
     for (auto* statement :
-         {&insert_trial, &find_hash, &insert_metric, &insert_array, &insert_name, &find_name})
+         {&insert_trial, &find_hash, &remove_trial, &insert_metric, &insert_array, &insert_name, &find_name})
       statement->reset();
     db.tryExec("PRAGMA journal_mode = DELETE");
   }
 
   void prepare() {
     insert_trial.emplace(db, "INSERT OR IGNORE INTO trial VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-    find_hash.emplace(db, "SELECT content_hash FROM trial WHERE id = ?");
+    find_hash.emplace(db, "SELECT content_hash, outcome FROM trial WHERE id = ?");
+    remove_trial.emplace(db, "DELETE FROM trial WHERE id = ?");
     insert_metric.emplace(db, "INSERT INTO metric VALUES (?, ?, ?, ?)");
     insert_array.emplace(db, "INSERT INTO array VALUES (?, ?, ?, ?)");
     insert_name.emplace(db, "INSERT INTO name (text) VALUES (?)");
@@ -78,12 +79,32 @@ struct CampaignStore::Parts {
   void forget() {
     names.clear();
     for (auto* statement :
-         {&insert_trial, &find_hash, &insert_metric, &insert_array, &insert_name, &find_name})
+         {&insert_trial, &find_hash, &remove_trial, &insert_metric, &insert_array, &insert_name, &find_name})
       (*statement)->tryReset();
   }
 
   StoreOutcome insert(const ComputedRow& computed, const StoreRequest& request, std::uint32_t attempts);
+  StoreOutcome compare(const ComputedRow& computed);
 };
+
+// What there is to say about a row whose trial is stored already; `stored` when it made room for it.
+StoreOutcome CampaignStore::Parts::compare(const ComputedRow& computed) {
+  const std::int64_t id = trial_id(computed.row.key);
+  find_hash->bind(1, id);
+  const bool found = find_hash->executeStep();
+  const SQLite::Column hash = find_hash->getColumn(0);
+  const bool same = found && hash.getBytes() == static_cast<int>(computed.hash.size()) &&
+                    std::memcmp(hash.getBlob(), computed.hash.data(), computed.hash.size()) == 0;
+  const bool was_given_up = found && find_hash->getColumn(1).getString() == kQuarantined;
+  find_hash->reset();
+  // Given up again, or given up while its result was on its way: no conflict of results.
+  if (same || (found && computed.row.outcome == kQuarantined)) return StoreOutcome::duplicate;
+  if (!was_given_up) return StoreOutcome::conflict;
+  remove_trial->bind(1, id);
+  remove_trial->exec();
+  remove_trial->reset();
+  return StoreOutcome::stored;
+}
 
 StoreOutcome CampaignStore::Parts::insert(const ComputedRow& computed, const StoreRequest& request,
                                           std::uint32_t attempts) {
@@ -104,13 +125,8 @@ StoreOutcome CampaignStore::Parts::insert(const ComputedRow& computed, const Sto
   const int inserted = trial.exec();
   trial.reset();
   if (inserted == 0) {
-    find_hash->bind(1, id);
-    const bool found = find_hash->executeStep();
-    const SQLite::Column hash = find_hash->getColumn(0);
-    const bool same = found && hash.getBytes() == static_cast<int>(computed.hash.size()) &&
-                      std::memcmp(hash.getBlob(), computed.hash.data(), computed.hash.size()) == 0;
-    find_hash->reset();
-    return same ? StoreOutcome::duplicate : StoreOutcome::conflict;
+    const StoreOutcome outcome = compare(computed);
+    return outcome == StoreOutcome::stored ? insert(computed, request, attempts) : outcome;
   }
   for (std::size_t i = 0; i < row.metrics.size(); ++i) {
     const auto& [name, value] = row.metrics[i];
@@ -203,10 +219,17 @@ Result<int> CampaignStore::migrate(const std::string& path) {
   }
 }
 
-std::vector<PlanCell> CampaignStore::plan(const CampaignSpec& spec) {
+std::vector<PlanCell> CampaignStore::plan(const CampaignSpec& spec, StoredTrials counted) {
   std::vector<PlanCell> plan;
-  for (const Cell& cell : spec.cells) plan.push_back({.repetitions = cell.repetitions, .stored = {}, .elsewhere = {}, .priority = cell.priority});
-  SQLite::Statement keys(parts_->db, "SELECT cell, repetition FROM trial ORDER BY id");
+  for (const Cell& cell : spec.cells) {
+    plan.push_back(
+        {.repetitions = cell.repetitions, .stored = {}, .elsewhere = {}, .priority = cell.priority});
+  }
+  SQLite::Statement keys(parts_->db,
+                         counted == StoredTrials::all
+                             ? "SELECT cell, repetition FROM trial ORDER BY id"
+                             : "SELECT cell, repetition FROM trial WHERE outcome <> ? ORDER BY id");
+  if (counted == StoredTrials::results) keys.bind(1, kQuarantined);
   PlanCell* cell = nullptr;
   std::uint64_t first = 0, last = 0;
   const auto close = [&] {
@@ -239,10 +262,15 @@ std::vector<StoreReport> CampaignStore::commit(std::span<const StoreRequest> req
     }
     return true;
   };
-  if (parts_->in_transaction) {
-    insert_all();
-  } else {
-    atomically(insert_all);
+  try {
+    if (parts_->in_transaction) {
+      insert_all();
+    } else {
+      atomically(insert_all);
+    }
+  } catch (const SQLite::Exception& e) {
+    if (!is_passing(e)) throw;
+    throw StorageTrouble(e.what());
   }
   return reports;
 }

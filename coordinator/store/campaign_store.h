@@ -18,6 +18,7 @@
 #include "campaigns/base/study.h"
 #include "coordinator/state/campaign_state.h"
 #include "coordinator/store/control_tables.h"
+#include "coordinator/store/storage_trouble.h"
 #include "coordinator/store/writer_lock.h"
 #include "core/base/error.h"
 
@@ -26,6 +27,10 @@ class Database;
 }
 
 namespace fatmc {
+
+/// Which rows count as stored when a campaign is planned: all, or those with a result, so that trials that
+/// were given up are tried again.
+enum class StoredTrials { all, results };
 
 /// Writes a campaign's rows. I/O errors throw SQLite::Exception.
 class CampaignStore {
@@ -47,10 +52,12 @@ class CampaignStore {
   ~CampaignStore();
 
   /// Cells of the spec with what is stored of them.
-  [[nodiscard]] std::vector<PlanCell> plan(const CampaignSpec& spec);
+  [[nodiscard]] std::vector<PlanCell> plan(const CampaignSpec& spec,
+                                           StoredTrials counted = StoredTrials::all);
 
   /// One transaction, on disk when it returns. A row whose trial is stored already is left out: `duplicate`
-  /// when its content hash is the same, else `conflict`.
+  /// when its content hash is the same, else `conflict`; but a result takes the place of a row that says
+  /// that the trial was given up. Throws StorageTrouble.
   std::vector<StoreReport> commit(std::span<const StoreRequest> requests);
   /// Calls `work`, in which all commits are one transaction: it becomes durable when `work` returns true, and
   /// leaves no trace when it returns false or throws.

@@ -26,6 +26,18 @@ bool is_fault_of_file(const SQLite::Exception& exception) {
   }
 }
 
+bool is_passing(const SQLite::Exception& exception) {
+  switch (primary_code(exception)) {
+    case SQLITE_FULL:
+    case SQLITE_IOERR:
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return true;
+    default:
+      return false;
+  }
+}
+
 Error database_error(const SQLite::Exception& exception, const std::string& path) {
   const std::string reason = std::string(" (") + exception.what() + ")";
   switch (primary_code(exception)) {

@@ -16,6 +16,9 @@ bool is_fault_of_file(const SQLite::Exception& exception);
 /// The file is no database, or a damaged one.
 bool is_damage(const SQLite::Exception& exception);
 
+/// It may pass by itself or when somebody makes room: disk full, I/O error, locked.
+bool is_passing(const SQLite::Exception& exception);
+
 Error database_error(const SQLite::Exception& exception, const std::string& path);
 
 }  // namespace fatmc

@@ -77,13 +77,31 @@ LinearModel sample(const Aircraft& aircraft, const Trim& trim, double tick_s, in
   return model;
 }
 
-Eigen::Matrix3cd LinearModel::response(double frequency_hz) const {
+namespace {
+
+using ComplexStateMatrix = Eigen::Matrix<std::complex<double>, kLinearStates, kLinearStates>;
+
+/// lambda I - A
+ComplexStateMatrix pencil_at(const LinearModel& model, double frequency_hz) {
   using Complex = std::complex<double>;
   const double angle = 2.0 * kPi * frequency_hz;
-  const Complex lambda = sample_time_s > 0.0 ? std::polar(1.0, angle * sample_time_s) : Complex(0.0, angle);
-  Eigen::Matrix<Complex, kLinearStates, kLinearStates> pencil = -a.cast<Complex>();
+  const Complex lambda =
+      model.sample_time_s > 0.0 ? std::polar(1.0, angle * model.sample_time_s) : Complex(0.0, angle);
+  ComplexStateMatrix pencil = -model.a.cast<Complex>();
   pencil.diagonal().array() += lambda;
-  return c.cast<Complex>() * pencil.partialPivLu().solve(b.cast<Complex>()) + d.cast<Complex>();
+  return pencil;
+}
+
+}  // namespace
+
+Eigen::Matrix3cd LinearModel::response(double frequency_hz) const {
+  using Complex = std::complex<double>;
+  return c.cast<Complex>() * pencil_at(*this, frequency_hz).partialPivLu().solve(b.cast<Complex>()) + d.cast<Complex>();
+}
+
+Eigen::Matrix<std::complex<double>, 3, 6> LinearModel::gust_response(double frequency_hz) const {
+  using Complex = std::complex<double>;
+  return c.cast<Complex>() * pencil_at(*this, frequency_hz).partialPivLu().solve(e.cast<Complex>());
 }
 
 std::vector<std::complex<double>> LinearModel::poles() const { return sorted_eigenvalues(a); }

@@ -49,6 +49,8 @@ struct LinearModel {
 
   /// C (lambda I - A)^-1 B + D at lambda = j 2 pi f, or exp(j 2 pi f T) when sampled; f in Hz.
   [[nodiscard]] Eigen::Matrix3cd response(double frequency_hz) const;
+  /// The same from the gusts, C (lambda I - A)^-1 E, 3 x 6.
+  [[nodiscard]] Eigen::Matrix<std::complex<double>, 3, 6> gust_response(double frequency_hz) const;
   /// Eigenvalues of A, by magnitude, then imaginary part.
   [[nodiscard]] std::vector<std::complex<double>> poles() const;
   /// Transmission zeros of one element, cancelling pole-zero pairs removed, in the order of poles().

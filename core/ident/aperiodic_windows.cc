@@ -1,10 +1,20 @@
 #include "core/ident/aperiodic_windows.h"
 
+#include <cmath>
 #include <string>
 
 #include "core/ident/line_regression.h"
 
 namespace fatmc {
+
+BinBand within_limits(const BinBand& band, const Measurement& m, int samples) {
+  const auto bin = [&](double hz) {
+    return std::clamp(hz * samples / m.experiment.rate_hz, -1.0, band.last + 1.0);
+  };
+  constexpr double kRounding = 1e-6;  // a limit that is a bin's frequency takes that bin in
+  return {std::max(band.first, static_cast<int>(std::ceil(bin(m.low_hz) - kRounding))),
+          std::min(band.last, static_cast<int>(std::floor(bin(m.high_hz) + kRounding)))};
+}
 
 Result<BinBand> bin_band(const Measurement& m, int width) {
   BinBand band;
@@ -14,9 +24,11 @@ Result<BinBand> bin_band(const Measurement& m, int width) {
     band.first = std::max(band.first, e.periods * e.lines.front());
     band.last = std::min(band.last, e.periods * e.lines.back());
   }
+  band = within_limits(band, m, static_cast<int>(m.inputs.rows()));
   if (band.count() < width) {
-    return fail(Error{"", 0, "n-e", "the window of " + std::to_string(width) + " DFT bins is wider than the " +
-                                        std::to_string(std::max(0, band.count())) + " bins there are, take a smaller n_E"});
+    return fail(Error{"", 0, "n-e",
+                      "the window of " + std::to_string(width) + " DFT bins is wider than the " +
+                          std::to_string(std::max(0, band.count())) + " bins there are, take a smaller n_E"});
   }
   return band;
 }

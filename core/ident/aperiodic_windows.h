@@ -1,4 +1,5 @@
-// Windows of consecutive DFT bins, for estimators that take a record as it is: arbitrary excitation, no period.
+// Windows of consecutive DFT bins, for estimators that take a record as it is: arbitrary excitation, no
+// period.
 #pragma once
 
 #include <algorithm>
@@ -15,12 +16,17 @@ struct BinBand {
 
   [[nodiscard]] int count() const { return last - first + 1; }
   /// First bin of the window of `width` bins about `bin`, shifted at the ends.
-  [[nodiscard]] int window(int bin, int width) const { return std::clamp(bin - width / 2, first, last - width + 1); }
+  [[nodiscard]] int window(int bin, int width) const {
+    return std::clamp(bin - width / 2, first, last - width + 1);
+  }
 };
 
-/// From the first excited bin to the last where the record knows its lines; else all between 0 and half the rate. Fails
-/// where the band is narrower than `width`.
+/// From the first excited bin to the last where the record knows its lines; else all between 0 and half the
+/// rate. Within the measurement's low_hz and high_hz. Fails where the band is narrower than `width`.
 Result<BinBand> bin_band(const Measurement& m, int width);
+
+/// The bins of `band`, of a DFT over `samples`, that lie between the measurement's low_hz and high_hz.
+BinBand within_limits(const BinBand& band, const Measurement& m, int samples);
 
 /// An estimate's head for every bin of the band: lines, frequencies, sizes, border lines.
 void begin_estimate(const Measurement& m, const BinBand& band, int width, FrmEstimate& estimate);

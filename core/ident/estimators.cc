@@ -7,6 +7,7 @@
 #include "core/ident/arbitrary_lpm.h"
 #include "core/ident/fast_lpm.h"
 #include "core/ident/interpolation_bias.h"
+#include "core/ident/joint_records.h"
 #include "core/ident/line_averages.h"
 #include "core/ident/local_rational.h"
 
@@ -32,6 +33,7 @@ Result<ResponseEstimate> fast_lpm(const Measurement& m, const EstimatorOptions& 
   ResponseEstimate out;
   out.frm = m.indirect() ? lpm.indirect(spectra_at_lines(*grid, m.references)) : lpm.direct();
   out.bias = interpolation_bias(*grid, out.frm);
+  out.grid = std::move(*grid);
   return out;
 }
 
@@ -48,9 +50,12 @@ Status check_count(EstimationMethod method, std::span<const Measurement> measure
     return fail("the robust method needs more records than inputs, " + std::to_string(n_in + 1) + " or more; there " +
                 (count == 1 ? "is 1" : "are " + std::to_string(count)));
   }
-  if (count == 1 || method == EstimationMethod::tlpm || method == EstimationMethod::etfe) return {};
+  if (count == 1 || method == EstimationMethod::tlpm || method == EstimationMethod::etfe ||
+      method == EstimationMethod::arbitrary) {
+    return {};
+  }
   return fail("method " + std::string(name_of(method)) + " takes one record, " + std::to_string(count) +
-              " are named; several go with robust, tlpm or etfe");
+              " are named; several go with robust, tlpm, etfe or arbitrary");
 }
 
 }  // namespace
@@ -98,7 +103,9 @@ Result<ResponseEstimate> estimate_response(EstimationMethod method, std::span<co
       return line_averages(LineAverage::transient, measurements, options, options.n_transient.value_or(5));
     case EstimationMethod::lrm:
       return local_rational(first, {n_e, options.order, options.n_transient.value_or(5)});
-    case EstimationMethod::arbitrary: return arbitrary_lpm(first, {n_e, options.order});
+    case EstimationMethod::arbitrary:
+      return measurements.size() > 1 ? joint_records(measurements, {n_e, options.order})
+                                     : arbitrary_lpm(first, {n_e, options.order});
     case EstimationMethod::welch: return welch(first, options.welch);
   }
   return fail("no such method");

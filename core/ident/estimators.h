@@ -6,6 +6,7 @@
 // | etfe      | 1, n_in | periodic, steady      | -               | F(2, 2q), q = P - 1                      |
 // | robust    | > n_in  | periodic              | -               | F(2, 2q), q = records - n_in             |
 // | arbitrary | 1       | any                   | bins            | F(2, 2q)                                 |
+// |           | > n_in  | any, from rest        | bins, guarded   | F(2, 2q), joint_records.h                |
 // | lrm       | 1       | any                   | lines or bins   | none                                     |
 // | welch     | 1       | any                   | segments        | F(2, 2q) for independent segments        |
 #pragma once

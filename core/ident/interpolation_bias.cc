@@ -35,19 +35,25 @@ void curvature(const LpmGrid& grid, const FrmEstimate& estimate, int k, std::vec
   }
 }
 
+/// alpha of the limit or of Table 2-3.
+double named_constant(BiasConstant constant, int order) {
+  if (constant == BiasConstant::limit) return limit_bias_constant(order);
+  const std::optional<double> printed = printed_bias_constant(order);
+  FATMC_CHECK(printed.has_value(), "Table 2-3 has orders 2, 4 and 6");
+  return *printed;
+}
+
+/// (B_lpm / 2)^E in Hz^E.
+double window_power(const LpmGrid& grid, int k) {
+  const auto offsets = grid.offsets_hz(k);
+  const double b_lpm = (offsets.back() - offsets.front()) * grid.window() / (grid.window() - 1);
+  return std::pow(0.5 * b_lpm, grid.bias_exponent());
+}
+
 /// sum s_i d_i^E in Hz^E, exactly or as alpha (B_lpm / 2)^E.
 double moment(const LpmGrid& grid, int k, BiasConstant constant) {
   if (constant == BiasConstant::exact_offsets) return grid.bias_moment(k);
-  const int order = grid.options().order;
-  double alpha = limit_bias_constant(order);
-  if (constant == BiasConstant::printed) {
-    const std::optional<double> printed = printed_bias_constant(order);
-    FATMC_CHECK(printed.has_value(), "Table 2-3 has orders 2, 4 and 6");
-    alpha = *printed;
-  }
-  const auto offsets = grid.offsets_hz(k);
-  const double b_lpm = (offsets.back() - offsets.front()) * grid.window() / (grid.window() - 1);
-  return alpha * std::pow(0.5 * b_lpm, grid.bias_exponent());
+  return named_constant(constant, grid.options().order) * window_power(grid, k);
 }
 
 double binomial(int n, int k) {
@@ -92,15 +98,29 @@ MatrixStack<double> interpolation_bias(const LpmGrid& grid, const FrmEstimate& e
   return bias;
 }
 
-MatrixStack<double> three_db_range_hz(const LpmGrid& grid, const FrmEstimate& estimate) {
+double bias_constant(const LpmGrid& grid, int k, BiasConstant constant) {
+  if (constant == BiasConstant::exact_offsets) return grid.bias_moment(k) / window_power(grid, k);
+  return named_constant(constant, grid.options().order);
+}
+
+MatrixStack<double> three_db_range_hz(const LpmGrid& grid, const FrmEstimate& estimate, ThreeDbRule rule) {
   FATMC_CHECK(grid.line_count() == estimate.line_count(), "the grid behind the estimate");
+  const int elements = estimate.n_out * estimate.n_in;
   MatrixStack<double> range(estimate.n_out, estimate.n_in, estimate.line_count());
-  std::vector<double> g0, g2;
   for (int k = 0; k < estimate.line_count(); ++k) {
-    double* b = range.data(k);
-    curvature(grid, estimate, k, g0, g2, b);
-    for (int e = 0; e < estimate.n_out * estimate.n_in; ++e) {
-      b[e] = b[e] > 0.0 ? 2.0 * std::sqrt(kDrop / b[e]) : std::numeric_limits<double>::infinity();
+    const auto rows = {grid.constant_row(k), grid.linear_row(k), grid.quadratic_row(k)};
+    for (int e = 0; e < elements; ++e) {
+      std::complex<double> psi[3];
+      auto* term = psi;
+      for (const auto& row : rows) {
+        for (std::size_t w = 0; w < row.size(); ++w) {
+          *term += row[w] * estimate.G.data(grid.first(k) + static_cast<int>(w))[e];
+        }
+        ++term;
+      }
+      const std::complex<double> linear = rule == ThreeDbRule::linear_kept ? psi[1] : 0.0;
+      const double root = std::abs(std::sqrt(linear * linear - 4.0 * kDrop * psi[0] * psi[2]));
+      range.data(k)[e] = std::abs(psi[2]) > 0.0 ? root / std::abs(psi[2]) : std::numeric_limits<double>::infinity();
     }
   }
   return range;

@@ -47,7 +47,21 @@ std::optional<double> printed_bias_constant(int order);
 MatrixStack<double> interpolation_bias(const LpmGrid& grid, const FrmEstimate& estimate,
                                        BiasConstant constant = BiasConstant::exact_offsets);
 
-/// The 3-dB range estimate of every element in Hz; infinite where the curvature is zero.
-MatrixStack<double> three_db_range_hz(const LpmGrid& grid, const FrmEstimate& estimate);
+/// alpha with which every line's b = alpha (B_lpm / B_3dB)^E |G| is written, B_lpm = (2 n_E + 1) times the mean spacing of
+/// the window: of the actual offsets at line k, or the limit's or Table 2-3's, the same at all lines.
+double bias_constant(const LpmGrid& grid, int k, BiasConstant constant);
+
+/// How (2.142), k Psi_0 = Psi_2 B^2 + Psi_1 B + Psi_0 with k = 1/sqrt 2, is solved for the 3-dB range |B_1 - B_2|.
+enum class ThreeDbRule {
+  linear_dropped,  ///< 2 sqrt((1 - k) |Psi_0/Psi_2|): what T uses, and what the bias is made of
+  linear_kept,     ///< |sqrt(Psi_1^2 - 4 (1 - k) Psi_0 Psi_2) / Psi_2| (2.143, 2.144)
+};
+// At a narrow peak G0/(1 + jx) the true width is 2 in x; the first rule gives 2 sqrt(1 - k) = 1.08, the second
+// 2 sqrt(1 - k - 1/4) = 0.41: there the linear term of the complex polynomial is the turning phase, not a slope of the
+// magnitude, and cancels most of the curvature.
+
+/// The 3-dB range estimate of every element in Hz; infinite where the polynomial has no curvature.
+MatrixStack<double> three_db_range_hz(const LpmGrid& grid, const FrmEstimate& estimate,
+                                      ThreeDbRule rule = ThreeDbRule::linear_dropped);
 
 }  // namespace fatmc

@@ -82,6 +82,8 @@ double LpmGrid::frequency_hz(int k) const {
 std::span<const double> LpmGrid::offsets_hz(int k) const { return slice(offsets_hz_, k, window()); }
 std::span<const double> LpmGrid::scaled_offsets(int k) const { return slice(scaled_offsets_, k, window()); }
 std::span<const double> LpmGrid::constant_row(int k) const { return slice(constant_rows_, k, window()); }
+std::span<const double> LpmGrid::own_constant_row(int k) const { return slice(own_constant_rows_, k, window()); }
+std::span<const double> LpmGrid::linear_row(int k) const { return slice(linear_rows_, k, window()); }
 std::span<const double> LpmGrid::quadratic_row(int k) const { return slice(quadratic_rows_, k, window()); }
 
 void LpmGrid::place_windows() {
@@ -113,6 +115,8 @@ void LpmGrid::fit_bias_polynomials() {
     double moment = 0.0;
     for (int i = 0; i < window(); ++i) {
       constant_rows_.push_back(rows(0, i));
+      own_constant_rows_.push_back(constant(i));
+      linear_rows_.push_back(rows(1, i) / scale_hz(k));
       quadratic_rows_.push_back(rows(2, i) / (scale_hz(k) * scale_hz(k)));
       moment += constant(i) * std::pow(scaled_offsets(k)[index(i)], bias_exponent());
     }

@@ -71,9 +71,12 @@ class LpmGrid {
   /// The 2n non-excited bins of every line and the fits through them.
   [[nodiscard]] const TransientWindows& transient() const { return transient_; }
 
-  /// Constant and quadratic term (per Hz^2) of a polynomial of degree max(R, 2) through the window (appendix C.3).
+  /// Constant, linear (per Hz) and quadratic term (per Hz^2) of a polynomial of degree max(R, 2) through the window (appendix C.3).
   [[nodiscard]] std::span<const double> constant_row(int k) const;
+  [[nodiscard]] std::span<const double> linear_row(int k) const;
   [[nodiscard]] std::span<const double> quadratic_row(int k) const;
+  /// Constant term of degree R itself: what the LPM makes of a response without noise.
+  [[nodiscard]] std::span<const double> own_constant_row(int k) const;
   /// |sum_i s_i d_i^E| in Hz^E, d_i the offsets and s the constant row of degree R; see interpolation_bias.h.
   [[nodiscard]] double bias_moment(int k) const { return bias_moment_[static_cast<std::size_t>(k)]; }
   /// E: R + 2 for even R, R + 1 for odd R.
@@ -90,7 +93,7 @@ class LpmGrid {
   std::vector<int> first_;
   std::vector<double> offsets_hz_, scaled_offsets_, scale_hz_;
   TransientWindows transient_;
-  std::vector<double> constant_rows_, quadratic_rows_, bias_moment_;
+  std::vector<double> constant_rows_, own_constant_rows_, linear_rows_, quadratic_rows_, bias_moment_;
 };
 
 }  // namespace fatmc

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,8 @@ struct Measurement {
   Eigen::MatrixXd outputs;        ///< samples x n_out
   Eigen::MatrixXd inputs;         ///< samples x n_in
   Eigen::MatrixXd references;     ///< samples x n_in (indirect) or samples x 0 (direct)
+  double low_hz = 0.0;            ///< band of the estimate, for methods that take any bin
+  double high_hz = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] int n_out() const { return static_cast<int>(outputs.cols()); }
   [[nodiscard]] int n_in() const { return static_cast<int>(inputs.cols()); }
@@ -27,6 +30,7 @@ struct ResponseEstimate {
   FrmEstimate frm;
   MatrixStack<double> bias;       ///< n_out x n_in a line; empty where the method has no estimate of its bias
   MatrixStack<double> coherence;  ///< n_out x 1 a line, multiple coherence; empty for methods without one
+  std::optional<LpmGrid> grid;    ///< windows behind a fast LPM estimate; none for other methods
   std::vector<int> fallback;      ///< lines (harmonics) where a simpler method stepped in
   std::vector<std::string> notes; ///< one sentence each, for the reader of the result
 };

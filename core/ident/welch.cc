@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/ident/aperiodic_windows.h"
 #include "core/ident/line_regression.h"
 #include "core/ident/mean_spectra.h"
 
@@ -55,6 +56,10 @@ Result<Plan> plan(const Measurement& m, const WelchOptions& o) {
     p.first_bin = std::max(1, static_cast<int>(std::floor(m.experiment.lines.front() * scale)));
     p.last_bin = std::min(p.last_bin, static_cast<int>(std::ceil(m.experiment.lines.back() * scale)));
   }
+  const BinBand band = within_limits({p.first_bin, p.last_bin}, m, p.segment);
+  if (band.count() < 1) return fail(Error{"", 0, "segment", "no bin of a segment lies in the band, take longer ones"});
+  p.first_bin = band.first;
+  p.last_bin = band.last;
   return p;
 }
 

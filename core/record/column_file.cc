@@ -9,106 +9,29 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
-#include <string_view>
 #include <system_error>
 
 #include "core/base/check.h"
 #include "core/base/text.h"
+#include "core/record/column_stream.h"
 
 namespace fatmc {
-namespace {
-
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '"'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-/// Cuts the first line off `rest`.
-std::string_view next_line(std::string_view& rest) {
-  const std::size_t end = std::min(rest.find('\n'), rest.size());
-  const std::string_view line = rest.substr(0, end);
-  rest.remove_prefix(std::min(end + 1, rest.size()));
-  return line;
-}
-
-Result<std::vector<std::string>> read_names(std::string_view line, const std::string& path) {
-  std::vector<std::string> names;
-  while (true) {
-    const std::size_t comma = line.find(',');
-    const std::string name(trimmed(line.substr(0, comma)));
-    double number = 0.0;
-    if (name.empty() || parse_double(name, number)) {
-      return fail(Error{path, 1, "", "column " + std::to_string(names.size() + 1) +
-                                         " has no name, the first line must name the columns"});
-    }
-    if (std::find(names.begin(), names.end(), name) != names.end()) {
-      return fail(Error{path, 1, name, "two columns have this name"});
-    }
-    names.push_back(name);
-    if (comma == std::string_view::npos) return names;
-    line.remove_prefix(comma + 1);
-  }
-}
-
-/// Reads one row into `values`; false where a field is not a finite number (its index in `bad`).
-bool read_row(std::string_view line, std::vector<double>& values, std::string_view& bad) {
-  values.clear();
-  while (true) {
-    const std::size_t comma = line.find(',');
-    const std::string_view field = line.substr(0, comma);
-    double value = 0.0;
-    const auto end = std::from_chars(field.data(), field.data() + field.size(), value);
-    const bool plain = end.ec == std::errc() && end.ptr == field.data() + field.size() && std::isfinite(value);
-    if (!plain && !parse_double(field, value)) {
-      bad = trimmed(field);
-      return false;
-    }
-    values.push_back(value);
-    if (comma == std::string_view::npos) return true;
-    line.remove_prefix(comma + 1);
-  }
-}
-
-}  // namespace
-
 Result<Columns> read_columns(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path)) return fail(Error{path, 0, "", "cannot be read, name a CSV that exists"});
-  std::ostringstream buffer;
-  buffer << in.rdbuf();
-  const std::string text = std::move(buffer).str();
-  std::string_view rest = text;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // byte order mark of some spreadsheets
-  Result<std::vector<std::string>> names = read_names(next_line(rest), path);
-  if (!names) return fail(names.error());
-
-  const std::size_t width = names->size();
+  if (!in || std::filesystem::is_directory(path))
+    return fail(Error{path, 0, "", "cannot be read, name a CSV that exists"});
+  Result<ColumnStream> stream = ColumnStream::open(in, path);
+  if (!stream) return fail(stream.error());
   std::vector<double> all, row;
-  all.reserve(static_cast<std::size_t>(std::count(rest.begin(), rest.end(), '\n') + 1) * width);
-  for (int line_number = 2; !rest.empty(); ++line_number) {
-    const std::string_view line = next_line(rest);
-    if (trimmed(line).empty()) {
-      if (trimmed(rest).empty()) break;  // blank lines at the end
-      return fail(Error{path, line_number, "", "is empty, records have no gaps"});
-    }
-    std::string_view bad;
-    if (!read_row(line, row, bad)) {
-      const std::string name = row.size() < width ? (*names)[row.size()] : std::to_string(row.size() + 1);
-      return fail(Error{path, line_number, name,
-                        (bad.empty() ? "the value is missing" : "\"" + std::string(bad) + "\" is not a finite number") +
-                            ", cut or repair the record"});
-    }
-    if (row.size() != width) {
-      return fail(Error{path, line_number, "", std::to_string(row.size()) + " values where the header names " +
-                                                   std::to_string(width) + " columns"});
-    }
+  while (true) {
+    const Result<bool> more = stream->next(row);
+    if (!more) return fail(more.error());
+    if (!*more) break;
     all.insert(all.end(), row.begin(), row.end());
   }
+  const std::size_t width = stream->names().size();
   Columns columns;
-  columns.names = std::move(*names);
+  columns.names = stream->names();
   columns.values = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
       all.data(), static_cast<Eigen::Index>(all.size() / width), static_cast<Eigen::Index>(width));
   return columns;
@@ -161,13 +84,15 @@ Result<double> rate_from_time(const Eigen::Ref<const Eigen::VectorXd>& t, const 
     const int line = static_cast<int>(i) + 3;
     if (!(steps[i] > 0.0)) return fail(Error{file, line, "t", "time does not ascend"});
     if (steps[i] > 1.5 * step) {
-      return fail(Error{file, line, "t", "gap: t goes from " + shortest(t(static_cast<Eigen::Index>(i))) + " to " +
-                                             shortest(t(static_cast<Eigen::Index>(i) + 1)) + " s, steps are " +
-                                             significant(step, 6) + " s"});
+      return fail(Error{file, line, "t",
+                        "gap: t goes from " + shortest(t(static_cast<Eigen::Index>(i))) + " to " +
+                            shortest(t(static_cast<Eigen::Index>(i) + 1)) + " s, steps are " +
+                            significant(step, 6) + " s"});
     }
     if (std::abs(steps[i] - step) > 0.01 * step) {
-      return fail(Error{file, line, "t", "unequal steps: " + significant(steps[i], 6) + " s among steps of " +
-                                             significant(step, 6) + " s, resample the record"});
+      return fail(Error{file, line, "t",
+                        "unequal steps: " + significant(steps[i], 6) + " s among steps of " +
+                            significant(step, 6) + " s, resample the record"});
     }
   }
   return static_cast<double>(n - 1) / (t(n - 1) - t(0));

@@ -39,6 +39,15 @@ Result<std::vector<int>> lines_from_ranges(std::span<const FrequencyRange> range
   return std::vector<int>(lines.begin(), lines.end());
 }
 
+std::vector<int> zippered_lines(std::span<const int> lines, int input, int inputs) {
+  FATMC_CHECK(0 <= input && input < inputs, "one of the inputs");
+  std::vector<int> out;
+  for (auto i = static_cast<std::size_t>(input); i < lines.size(); i += static_cast<std::size_t>(inputs)) {
+    out.push_back(lines[i]);
+  }
+  return out;
+}
+
 std::span<const FrequencyRange> table_5_1_ranges() {
   static constexpr std::array<FrequencyRange, 3> kRanges = {
       FrequencyRange{0.285, 0.38, 0.005}, FrequencyRange{0.38, 0.58, 0.01}, FrequencyRange{0.58, 2.89, 0.07}};

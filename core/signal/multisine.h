@@ -25,6 +25,9 @@ struct FrequencyRange {
 /// Fails where a start, stop or step is no multiple of base_hz, or where a range is empty.
 Result<std::vector<int>> lines_from_ranges(std::span<const FrequencyRange> ranges, double base_hz);
 
+/// Lines of one of several inputs that share `lines` without overlap (zippered): input, input + inputs, input + 2 inputs ...
+std::vector<int> zippered_lines(std::span<const int> lines, int input, int inputs);
+
 /// The ranges of T Table 5-1 (base 0.005 Hz, 73 lines, harmonics 57 ... 578). Printed is a last step of 0.7 Hz;
 /// 0.07 Hz gives the 73 lines of the text.
 std::span<const FrequencyRange> table_5_1_ranges();

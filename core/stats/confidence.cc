@@ -1,5 +1,6 @@
 #include "core/stats/confidence.h"
 
+#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 
 #include "core/base/check.h"
@@ -14,6 +15,11 @@ double f_cdf_2_2q(double x, double q) {
 double f_quantile_2_2q(double p, double q) {
   FATMC_CHECK(q > 0.0 && p >= 0.0 && p <= 1.0, "a probability and degrees of freedom");
   return q * std::expm1(-std::log1p(-p) / q);
+}
+
+double f_quantile(double p, double d1, double d2) {
+  FATMC_CHECK(p > 0.0 && p < 1.0 && d1 > 0.0 && d2 > 0.0, "a probability and degrees of freedom");
+  return boost::math::quantile(boost::math::fisher_f(d1, d2), p);
 }
 
 double confidence_radius(double variance, double p, double q) {

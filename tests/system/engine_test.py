@@ -9,118 +9,12 @@ import signal
 import socket
 import sqlite3
 import subprocess
-import tempfile
-import time
 import unittest
 
-BIN = os.environ["FATMC_TEST_BIN"]
-FATMC = os.path.join(BIN, "fatmc")
-WORKER = os.path.join(BIN, "fatmc-worker")
-LIMIT_S = 60
-
-# Trials of about 2.5 and 25 ms, with failures among them: long enough to strike in mid-run.
-SPEC = """
-[campaign]
-study = "engine_test"
-name = "engine"
-seed = 11
-
-[[cell]]
-name = "short"
-repetitions = 120
-work = 1000000
-diverge_every = 10
-array = 7
-
-[[cell]]
-name = "long"
-repetitions = 60
-work = 10000000
-array = 3
-"""
+from engine_case import FATMC, LIMIT_S, SPEC, WORKER, EngineCase, children, is_alive, until
 
 
-def until(condition, what):
-    """Polls; the limit is there to end a broken run, not to measure one."""
-    end = time.monotonic() + LIMIT_S
-    while time.monotonic() < end:
-        value = condition()
-        if value:
-            return value
-        time.sleep(0.005)
-    raise AssertionError(f"waited in vain until {what}")
-
-
-def children(pid):
-    try:
-        with open(f"/proc/{pid}/task/{pid}/children") as file:
-            return [int(word) for word in file.read().split()]
-    except FileNotFoundError:
-        return []
-
-
-def is_alive(pid):
-    try:
-        with open(f"/proc/{pid}/stat") as file:
-            return file.read().rsplit(")", 1)[1].split()[0] not in "ZX"
-    except FileNotFoundError:
-        return False
-
-
-class Engine(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory(prefix="fatmc_engine_")
-        self.cwd = self.folder.name
-        self.started = []
-        self.write("spec.toml", SPEC)
-
-    def tearDown(self):
-        for process in self.started:
-            if process.poll() is None:
-                process.kill()
-            process.wait()
-            for stream in (process.stdout, process.stderr):
-                if stream:
-                    stream.close()
-        self.folder.cleanup()
-
-    def write(self, name, text):
-        with open(os.path.join(self.cwd, name), "w") as file:
-            file.write(text)
-
-    def path(self, name):
-        return os.path.join(self.cwd, name)
-
-    def call(self, *arguments):
-        return subprocess.run([FATMC, *arguments], cwd=self.cwd, capture_output=True, text=True, timeout=LIMIT_S)
-
-    def start(self, program, *arguments):
-        process = subprocess.Popen([program, *arguments], cwd=self.cwd, stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True)
-        self.started.append(process)
-        return process
-
-    def stored(self, database):
-        try:
-            connection = sqlite3.connect(f"file:{self.path(database)}?mode=ro", uri=True)
-            try:
-                return connection.execute("SELECT count(*) FROM trial").fetchone()[0]
-            finally:
-                connection.close()
-        except sqlite3.OperationalError:
-            return 0  # not yet made
-
-    def digest(self, database):
-        result = self.call("digest", database)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertRegex(result.stdout, r"\A[0-9a-f]{64}\n\Z")
-        return result.stdout
-
-    def reference_digest(self):
-        result = self.call("run", "spec.toml", "--db", "reference.db", "--workers", "1")
-        self.assertEqual(result.returncode, 0, result.stderr)
-        return self.digest("reference.db")
-
+class Engine(EngineCase):
     def test_one_and_two_workers_leave_the_same_digest(self):
         reference = self.reference_digest()
         result = self.call("run", "spec.toml", "--db", "two.db", "--workers", "2")
@@ -322,18 +216,44 @@ class Engine(unittest.TestCase):
         first.send_signal(signal.SIGTERM)
         self.assertEqual(first.wait(timeout=LIMIT_S), 3)
 
-    def test_a_trial_that_kills_its_worker_ends_the_run_with_1_and_keeps_the_rest(self):
+    def test_a_trial_that_kills_its_workers_is_quarantined_with_the_reason_and_the_rest_is_done(self):
         self.write("crash.toml", SPEC.replace("array = 7", "array = 7\ncrash_at = 100"))
+        result = self.call("run", "crash.toml", "--db", "crash.db", "--workers", "2")
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn("1 trials are quarantined", result.stderr)
+        self.assertIn("180 of 180 trials: 167 ok, 12 diverged, 1 quarantined", result.stdout)
+        failure, = self.rows("crash.db", "SELECT repetition, detail, attempts FROM trials WHERE outcome = 'quarantined'")
+        self.assertEqual(failure, (100, "killed its worker 3 times, at last: signal Aborted", 3))
+        again = self.call("run", "crash.toml", "--db", "crash.db", "--workers", "2")
+        self.assertEqual(again.returncode, 3, "a campaign with a trial given up stays partial")
+
+    def test_a_quarantined_trial_that_works_when_tried_again_completes_the_campaign(self):
+        reference = self.reference_digest()
+        self.write("crash.toml", SPEC.replace("array = 7", "array = 7\ncrash_if = \"bomb\"\ncrash_at = 100"))
+        self.write("bomb", "")
         result = self.call("run", "crash.toml", "--db", "crash.db", "--workers", "1")
+        self.assertEqual(result.returncode, 3, result.stderr)
+        os.remove(self.path("bomb"))
+        result = self.call("run", "crash.toml", "--db", "crash.db", "--workers", "1", "--retry-quarantined")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("180 of 180 trials: 168 ok, 12 diverged", result.stdout)
+        self.assertEqual(self.rows("crash.db", "SELECT count(*) FROM trial"), [(180,)])
+        self.assertEqual(self.payloads("crash.db"), self.payloads("reference.db"))
+        self.assertEqual(self.digest("reference.db"), reference)
+
+    def test_a_study_whose_every_trial_kills_its_worker_ends_with_1(self):
+        self.write("crash.toml", SPEC.replace("array = 7", "crash_every = 1"))
+        result = self.call("run", "crash.toml", "--db", "crash.db", "--workers", "2")
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertIn("without a trial done in between", result.stderr)
-        self.assertGreater(self.stored("crash.db"), 50)
 
-    def test_what_a_trial_throws_is_said_and_ends_the_run_with_1(self):
+    def test_what_a_trial_throws_is_said_and_is_the_reason_of_its_quarantine(self):
         self.write("throw.toml", SPEC.replace("array = 7", "array = 7\nthrow_at = 3"))
         result = self.call("run", "throw.toml", "--db", "throw.db", "--workers", "1")
-        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(result.returncode, 3, result.stderr)
         self.assertIn("trial 3 of cell 0 threw: as the spec told it", result.stderr)
+        detail = self.rows("throw.db", "SELECT detail FROM trials WHERE outcome = 'quarantined'")
+        self.assertEqual(detail, [("killed its worker 3 times, at last: trial 3 of cell 0 threw: as the spec told it",)])
 
     def test_sql_users_find_scalars_and_arrays_by_name(self):
         self.assertEqual(self.call("run", "spec.toml", "--db", "q.db", "--trials", "12").returncode, 0)

@@ -23,33 +23,37 @@ def dft(x, bins):
 
 
 def transient(z, excited, periods, n, order):
-    """Z^ at the excited bins; z: all bins x channels."""
+    """Z^ at the excited bins and the covariance of its noise; z: all bins x channels."""
     half = (len(z) - 1) // 2
     candidates = np.array([m for m in range(excited[0] - (periods - 1), min(excited[-1] + periods - 1, half) + 1)
                            if m not in set(excited)])
-    out = []
+    out, noise = [], []
     for m in excited:
         left = np.sum(candidates < m)
         start = min(max(left - n, 0), len(candidates) - 2 * n)
         bins = candidates[start:start + 2 * n]
         r = (bins - m) / max(abs(bins - m))
         k = np.vander(r, order + 1, increasing=True)
-        out.append(z[m] - np.linalg.lstsq(k, z[bins], rcond=None)[0][0])
-    return np.array(out)
+        fit = np.linalg.lstsq(k, z[bins], rcond=None)[0]
+        out.append(z[m] - fit[0])
+        residual = (z[bins] - k @ fit).T
+        mu_poly = 1.0 + np.linalg.inv(k.T @ k)[0, 0]
+        noise.append(mu_poly * residual @ residual.conj().T / (2 * n - order - 1))
+    return np.array(out), np.array(noise)
 
 
 def fast_lpm(y, u, r, lines, periods, period, rate, n_e, order, n_transient):
-    """Rows (line, output, input) -> G, variance, bias. r is None for a direct estimate."""
+    """G, variance, bias as lines x outputs x inputs, and fields of estimate.json. r is None for a direct estimate."""
     excited = [periods * k for k in lines]
     everything = np.arange(periods * period)
-    z = transient(dft(np.hstack([y, u]), everything), excited, periods, n_transient, order)
+    z, noise = transient(dft(np.hstack([y, u]), everything), excited, periods, n_transient, order)
     n_out, n_in = y.shape[1], u.shape[1]
     known = z[:, n_out:] if r is None else dft(r, excited)
     regressed = z[:, :n_out] if r is None else z
     frequency = np.array(lines) * rate / period
     width = 2 * n_e + 1
     q = width - (order + 1) * n_in
-    g_all, variance = [], []
+    g_all, variance, ratio = [], [], []
     windows = [min(max(k - n_e, 0), len(lines) - width) + np.arange(width) for k in range(len(lines))]
     for k, window in enumerate(windows):
         d = frequency[window] - frequency[k]
@@ -73,9 +77,11 @@ def fast_lpm(y, u, r, lines, periods, period, rate, n_e, order, n_transient):
             b = inv.T @ a @ inv.conj()
         covariance = np.kron(b, c_v)  # of vec G, columns stacked
         g_all.append(g)
+        v = np.hstack([np.eye(n_out), -g])
+        ratio.append(np.diag(c_v).real / np.diag(v @ noise[k] @ v.conj().T).real)
         variance.append(np.diag(covariance).real.reshape(n_in, n_out).T)
     g_all = np.array(g_all)
-    bias = np.zeros(g_all.shape)
+    bias, dropped, kept = np.zeros(g_all.shape), np.zeros(g_all.shape), np.zeros(g_all.shape)
     exponent = order + 2 if order % 2 == 0 else order + 1
     for k, window in enumerate(windows):
         d = frequency[window] - frequency[k]
@@ -86,8 +92,15 @@ def fast_lpm(y, u, r, lines, periods, period, rate, n_e, order, n_transient):
             for j in range(n_in):
                 g0, g2 = fit[0] @ g_all[window, i, j], fit[2] @ g_all[window, i, j] / scale ** 2
                 b3db = 2.0 * np.sqrt((1.0 - 1.0 / np.sqrt(2.0)) * abs(g0 / g2))
+                dropped[k, i, j] = b3db
+                root = np.roots([g2, fit[1] @ g_all[window, i, j] / scale, (1.0 - 1.0 / np.sqrt(2.0)) * g0])
+                kept[k, i, j] = abs(root[0] - root[1])
                 bias[k, i, j] = abs(own[0] @ (2.0 * d / b3db) ** exponent) * abs(g_all[k, i, j])
-    return g_all, np.array(variance), bias
+    deviation = np.sqrt(np.diagonal(noise, axis1=1, axis2=2).real)
+    snr = 20.0 * np.log10((abs(z[:, n_out:]) - deviation[:, n_out:]) / deviation[:, n_out:])
+    fields = {"input_snr_db": snr, "deviation": deviation, "output_ratio": np.array(ratio), "linear_dropped": dropped,
+              "linear_kept": kept}
+    return g_all, np.array(variance), bias, fields
 
 
 def estimate(fatmc, record, meta, directory, options):
@@ -104,7 +117,7 @@ def compare(what, info, rows, columns, roles, rate):
     pick = lambda names: np.stack([columns[name] for name in names], axis=1)
     reference = pick(roles["reference"]) if info["indirect"] else None
     skip = info["skipped_periods"] * info["period_samples"]
-    g, variance, bias = fast_lpm(pick(roles["output"])[skip:], pick(roles["input"])[skip:],
+    g, variance, bias, fields = fast_lpm(pick(roles["output"])[skip:], pick(roles["input"])[skip:],
                                  None if reference is None else reference[skip:], info["lines"], info["periods"],
                                  info["period_samples"], rate, info["n_e"], info["order"], info["n_transient"])
     expected_rows = len(info["lines"]) * len(roles["output"]) * len(roles["input"])
@@ -118,6 +131,14 @@ def compare(what, info, rows, columns, roles, rate):
         worst["G"] = max(worst["G"], abs(value - g[k, i, j]) / np.max(abs(g[k])))
         worst["variance"] = max(worst["variance"], abs(float(row["variance"]) / variance[k, i, j] - 1.0))
         worst["bias"] = max(worst["bias"], abs(float(row["bias"]) / bias[k, i, j] - 1.0))
+    found = {"input_snr_db": info["input_snr_db"], "deviation": info["noise"]["deviation"],
+             "output_ratio": info["nonlinear_distortion"]["output_ratio"], **info["three_db_hz"]}
+    for name, value in found.items():
+        value = np.array([[np.nan if v is None else v for v in np.ravel(row)] for row in value], dtype=float).reshape(
+            fields[name].shape)
+        known = np.isfinite(value)
+        assert known.mean() > 0.9 or name == "input_snr_db", name
+        worst[name] = np.max(abs(value[known] / fields[name][known] - 1.0), initial=0.0)
     print(f"{what}: largest relative differences " + ", ".join(f"{k} {v:.1e}" for k, v in worst.items()))
     assert max(worst.values()) < TOLERANCE, f"{what}: {worst}"
 

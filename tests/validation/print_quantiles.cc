@@ -1,10 +1,11 @@
 // Prints "f q p quantile cdf(quantile)", "t dof p quantile" and "r s_u s_y re(rho) im(rho) radius probability" lines for
-// stats_reference.py.
+// stats_reference.py, "j n_out n_in q p quantile error cdf(quantile)" lines for joint_region_reference.py.
 #include <cstdio>
 
 #include "core/base/text.h"
 #include "core/stats/confidence.h"
 #include "core/stats/intervals.h"
+#include "core/stats/lawley_hotelling.h"
 #include "core/stats/ratio_density.h"
 
 int main() {
@@ -27,6 +28,15 @@ int main() {
                       shortest(fatmc::ratio_disc_probability(radius, {input, output, rho})).c_str());
         }
       }
+    }
+  }
+  const int sizes[][3] = {{3, 3, 10}, {3, 3, 3}, {1, 1, 10}, {3, 1, 10}, {1, 3, 10}, {2, 3, 4}, {3, 2, 4}, {6, 3, 10}, {4, 4, 40}};
+  for (const auto& [n_out, n_in, q] : sizes) {
+    const fatmc::ComplexLawleyHotelling law(n_out, n_in, q);
+    for (const double p : {0.1, 0.5, 0.95, 0.99}) {
+      const auto t = law.quantile(p);
+      std::printf("j %d %d %d %s %s %s %s\n", n_out, n_in, q, shortest(p).c_str(), shortest(t.value).c_str(),
+                  shortest(t.error).c_str(), shortest(law.distribution(t.value).value).c_str());
     }
   }
   return 0;

@@ -24,6 +24,8 @@ def disc(s_u, s_y, rho, radius):
 worst, count, worst_disc, discs = 0.0, 0, 0.0, 0
 for line in subprocess.run([sys.argv[1]], check=True, capture_output=True, text=True).stdout.splitlines():
     kind, *numbers = line.split()
+    if kind == "j":  # joint_region_reference.py
+        continue
     if kind == "r":
         s_u, s_y, re, im, radius, p = map(float, numbers)
         difference = abs(p - disc(s_u, s_y, complex(re, im), radius))

@@ -18,6 +18,7 @@ class Recorder final : public Outbox {
     if (const auto* ack = std::get_if<Ack>(&message)) acks.push_back(ack->sequence);
   }
   void store(StoreRequest request) override { requests.push_back(std::move(request)); }
+  void note(const std::string&) override {}
   std::vector<std::pair<WorkerId, Lease>> leases;
   std::vector<std::uint64_t> acks;
   std::vector<StoreRequest> requests;
@@ -164,7 +165,7 @@ TEST_F(CampaignPlanTest, LeasesThatAreOutForLongSayWhereAndHowOftenTheirTrialsWe
   EXPECT_EQ(leases[0].pid, 7U);
   EXPECT_EQ(leases[0].missing, 1U);
   EXPECT_EQ(leases[0].attempts, 1U);
-  state_->on_gone(kOne, now_, out_);
+  state_->on_gone(kOne, {}, now_, out_);
   state_->on_message(kTwo, Hello{kProtocolVersion, "build", kTwo, "other", 8, 1}, now_, out_);
   state_->on_message(kTwo, Credit{1, 0, 0}, now_, out_);
   leases = state_->leases(now_, milliseconds(0));

@@ -107,18 +107,16 @@ TEST_F(CampaignStateTest, RowsAreAcknowledgedAfterTheCommitOnly) {
   EXPECT_EQ(out_.all<Ack>(kOne)[0].sequence, 5U);
 }
 
-TEST_F(CampaignStateTest, ALeaseThatIsNotMentionedIsGivenToAnother) {
+TEST_F(CampaignStateTest, TheTrialsOfAWorkerThatFallsSilentAreGivenToAnotherWithinTwoHeartbeats) {
   CampaignState state = make(1);
   join(state, kOne);
+  join(state, kTwo);
   state.on_message(kOne, Credit{1, 0, 0}, now_, out_);
   ASSERT_EQ(out_.all<Lease>(kOne).size(), 1U);
-  now_ += seconds(1);
-  join(state, kTwo);
-  state.on_message(kTwo, Credit{1, 0, 0}, now_, out_);
-  EXPECT_TRUE(out_.all<Lease>(kTwo).empty());
-  // Two heartbeats of 500 ms later than the timeout of 2 s at most.
-  while (now_ < milliseconds(3000)) {
-    now_ += milliseconds(500);
+  const MonotonicTime last_word = now_;
+  while (now_ < last_word + milliseconds(1000)) {
+    EXPECT_TRUE(out_.all<Lease>(kTwo).empty()) << "before a worker could be late once and lose a message";
+    now_ += milliseconds(100);
     state.on_message(kTwo, Heartbeat{{1, 0, 0}, {}}, now_, out_);
     state.on_tick(now_, out_);
   }
@@ -143,7 +141,7 @@ TEST_F(CampaignStateTest, ALeaseThatWasLostOnTheWayIsGivenAgain) {
   CampaignState state = make(1);
   join(state, kOne);
   state.on_message(kOne, Credit{1, 0, 0}, now_, out_);
-  for (int i = 0; i < 6; ++i) {  // the worker lives, but never heard of its lease
+  for (int i = 0; i < 3; ++i) {  // the worker lives, but never heard of its lease
     now_ += milliseconds(500);
     state.on_message(kOne, Heartbeat{{1, 0, 0}, {}}, now_, out_);
     state.on_tick(now_, out_);
@@ -159,7 +157,7 @@ TEST_F(CampaignStateTest, TheLeasesOfAProcessThatEndedAreFreeAtOnce) {
   state.on_message(kOne, Credit{1, 0, 0}, now_, out_);
   state.on_message(kTwo, Credit{1, 0, 0}, now_, out_);
   EXPECT_TRUE(out_.all<Lease>(kTwo).empty());
-  state.on_gone(kOne, now_, out_);
+  state.on_gone(kOne, {}, now_, out_);
   EXPECT_EQ(out_.all<Lease>(kTwo).size(), 1U);
 }
 
@@ -167,7 +165,7 @@ TEST_F(CampaignStateTest, ALateResultIsAcceptedAndItsTrialNotLeasedAgain) {
   CampaignState state = make(1);
   join(state, kOne);
   state.on_message(kOne, Credit{1, 0, 0}, now_, out_);
-  state.on_gone(kOne, now_, out_);
+  state.on_gone(kOne, {}, now_, out_);
   join(state, kOne);
   deliver(state, kOne, 1, {0});
   commit_all(state);
@@ -275,6 +273,227 @@ TEST_F(CampaignStateTest, WhatIsStoredIsNotLeased) {
   state.on_message(kOne, Credit{1, 0, 0}, now_, out_);
   EXPECT_EQ(out_.all<Lease>(kOne).at(0).first, 7U);
   EXPECT_EQ(out_.all<Lease>(kOne).at(0).last, 8U);
+}
+
+// ---- trials that kill their workers
+
+class Killers : public CampaignStateTest {
+ protected:
+  // A new worker gets a lease and dies of it.
+  Lease die(CampaignState& state, std::uint32_t jobs = 1, const std::string& how = "signal Aborted") {
+    const WorkerId worker = fresh();
+    join(state, worker, jobs);
+    state.on_message(worker, Credit{jobs, 0, 0}, now_, out_);
+    EXPECT_EQ(out_.all<Lease>(worker).size(), 1U);
+    const Lease lease = out_.all<Lease>(worker).at(0);
+    state.on_gone(worker, how, now_, out_);
+    return lease;
+  }
+  WorkerId fresh() { return std::string(31, 'f') + std::string(1, static_cast<char>('0' + workers_++)); }
+  int workers_ = 0;
+};
+
+TEST_F(Killers, ATrialOverWhichThreeWorkersDiedIsQuarantinedWithTheReasonAndTheRunEnds) {
+  CampaignState state = make(1);
+  die(state);
+  die(state);
+  EXPECT_TRUE(out_.requests.empty());
+  die(state, 1, "signal Segmentation fault");
+  ASSERT_EQ(out_.requests.size(), 1U);
+  const StoreRequest& request = out_.requests[0];
+  ASSERT_EQ(request.rows.size(), 1U);
+  EXPECT_EQ(request.rows[0].row.outcome, kQuarantined);
+  EXPECT_EQ(request.rows[0].row.detail, "killed its worker 3 times, at last: signal Segmentation fault");
+  EXPECT_EQ(request.rows[0].hash, content_hash(request.rows[0].row));
+  EXPECT_EQ(request.attempts[0], 3U);
+  commit_all(state);
+  EXPECT_TRUE(state.finished());
+  EXPECT_EQ(state.counters().quarantined, 1U);
+}
+
+TEST_F(Killers, WorkersThatLeaveInPeaceAreNobodysFault) {
+  CampaignState state = make(1);
+  for (int i = 0; i < 6; ++i) die(state, 1, "");
+  EXPECT_EQ(state.counters().quarantined, 0U);
+}
+
+TEST_F(Killers, ASuspectIsLeasedAloneAndItsNeighboursAreCleared) {
+  CampaignState state = make(40);
+  join(state, kOne);
+  state.on_message(kOne, Credit{1, 0, 0}, now_, out_);
+  deliver(state, kOne, 1, {0}, milliseconds(1));
+  state.on_message(kOne, Credit{1, 0, out_.all<Lease>(kOne).back().lease}, now_, out_);
+  const Lease many = out_.all<Lease>(kOne).back();
+  ASSERT_GT(many.last - many.first, 5U);
+  state.on_gone(kOne, "signal Killed", now_, out_);
+  join(state, kTwo);
+  std::uint64_t newest = 0, sequence = 0;
+  for (std::uint64_t i = many.first; i < many.last; ++i) {
+    state.on_message(kTwo, Credit{1, 0, newest}, now_, out_);
+    const Lease one = out_.all<Lease>(kTwo).back();
+    EXPECT_EQ(one.first, i);
+    EXPECT_EQ(one.last, i + 1) << "a suspect goes alone";
+    newest = one.lease;
+    state.on_message(kTwo, Credit{0, 0, newest}, now_, out_);
+    EXPECT_EQ(out_.all<Lease>(kTwo).back().lease, newest) << "and nothing is leased ahead of it";
+    deliver(state, kTwo, ++sequence, {i}, milliseconds(1));
+  }
+  state.on_message(kTwo, Credit{1, 0, newest}, now_, out_);
+  EXPECT_GT(out_.all<Lease>(kTwo).back().last - out_.all<Lease>(kTwo).back().first, 1U)
+      << "the rest is innocent";
+}
+
+TEST_F(Killers, BeforeATrialIsGivenUpItHasAWorkerToItself) {
+  CampaignState state = make(8);
+  EXPECT_EQ(die(state, 2).last, 2U);
+  EXPECT_EQ(die(state, 2).last, 1U);  // trial 0 alone; now two workers died over it, and one over trial 1
+  join(state, kOne, 2);
+  state.on_message(kOne, Credit{2, 0, 0}, now_, out_);
+  const Lease first = out_.all<Lease>(kOne).at(0);
+  ASSERT_EQ(first.first, 0U);
+  ASSERT_EQ(first.last, 1U);
+  state.on_message(kOne, Credit{1, 0, first.lease}, now_, out_);
+  EXPECT_EQ(out_.all<Lease>(kOne).size(), 1U) << "nothing runs beside it";
+  deliver(state, kOne, 1, {0});  // innocent
+  state.on_gone(kOne, {}, now_, out_);
+  EXPECT_EQ(die(state, 2).first, 1U);
+  const Lease last = die(state, 2);
+  EXPECT_EQ(last.first, 1U);
+  EXPECT_EQ(last.last, 2U);
+  ASSERT_EQ(out_.requests.size(), 2U);
+  EXPECT_EQ(out_.requests[1].rows[0].row.key.repetition, 1U) << "the culprit alone is given up";
+  EXPECT_EQ(state.counters().quarantined, 1U);
+}
+
+TEST_F(Killers, ABusyWorkerIsDrainedForATrialThatMustRunAloneAndOthersWorkOn) {
+  CampaignState state = make(20);
+  join(state, kOne, 2);
+  join(state, kTwo, 2);
+  state.on_message(kOne, Credit{2, 0, 0}, now_, out_);  // trials 0, 1
+  state.on_message(kTwo, Credit{2, 0, 0}, now_, out_);  // trials 2, 3
+  die(state, 1);                                        // trial 4
+  die(state, 1);
+  deliver(state, kOne, 1, {0}, seconds(1));
+  const std::uint64_t one = out_.all<Lease>(kOne).back().lease, two = out_.all<Lease>(kTwo).back().lease;
+  state.on_message(kOne, Credit{1, 0, one}, now_, out_);
+  EXPECT_EQ(out_.all<Lease>(kOne).size(), 1U) << "waits for its other thread";
+  deliver(state, kTwo, 1, {2}, seconds(1));
+  state.on_message(kTwo, Credit{1, 0, two}, now_, out_);
+  EXPECT_EQ(out_.all<Lease>(kTwo).back().first, 5U) << "passes the suspect by";
+  deliver(state, kOne, 2, {1}, seconds(1));
+  state.on_message(kOne, Credit{2, 0, one}, now_, out_);
+  EXPECT_EQ(out_.all<Lease>(kOne).back().first, 4U);
+  EXPECT_EQ(out_.all<Lease>(kOne).back().last, 5U);
+}
+
+TEST_F(Killers, SilenceIsDeathUntilTheWorkerSpeaksAgain) {
+  CampaignState state = make(1);
+  for (int i = 0; i < 5; ++i) {
+    join(state, kOne);
+    state.on_message(kOne, Credit{1, 0, 0}, now_, out_);
+    now_ += seconds(3);
+    state.on_tick(now_, out_);
+    EXPECT_TRUE(state.workers().empty());
+  }
+  EXPECT_EQ(state.counters().quarantined, 0U) << "one worker that stutters, not three that died";
+  const WorkerId others[] = {fresh(), fresh(), fresh()};
+  for (const WorkerId& other : others) {
+    join(state, other);
+    state.on_message(other, Credit{1, 0, 0}, now_, out_);
+    now_ += seconds(3);
+    state.on_tick(now_, out_);
+  }
+  EXPECT_EQ(state.counters().quarantined, 1U);
+}
+
+TEST_F(Killers, ATrialThatThrowsIsQuarantinedWithWhatItThrew) {
+  CampaignState state = make(1);
+  for (int i = 0; i < 3; ++i) {
+    const WorkerId worker = fresh();
+    join(state, worker);
+    state.on_message(worker, Credit{1, 0, 0}, now_, out_);
+    state.on_message(worker, Refused{Refused::Code::trial_threw, "trial 0 threw: no memory"}, now_, out_);
+    state.on_gone(worker, "exit code 1", now_, out_);  // the process ends, too: one death
+  }
+  ASSERT_EQ(out_.requests.size(), 1U);
+  EXPECT_EQ(out_.requests[0].rows[0].row.detail,
+            "killed its worker 3 times, at last: trial 0 threw: no memory");
+}
+
+// ---- copies at the tail
+
+TEST_F(CampaignStateTest, AnIdleWorkerGetsACopyOfALongTrialThatIsOut) {
+  CampaignState state = make(2);
+  join(state, kOne);
+  join(state, kTwo);
+  state.on_message(kOne, Credit{1, 0, 0}, now_, out_);
+  state.on_message(kTwo, Credit{1, 0, 0}, now_, out_);
+  now_ += seconds(2);
+  deliver(state, kTwo, 1, {1}, seconds(2));
+  state.on_message(kTwo, Credit{1, 0, out_.all<Lease>(kTwo).back().lease}, now_, out_);
+  ASSERT_EQ(out_.all<Lease>(kTwo).size(), 2U);
+  EXPECT_EQ(out_.all<Lease>(kTwo)[1].first, 0U) << "the trial of the slow worker";
+  now_ += seconds(2);
+  deliver(state, kTwo, 2, {0}, seconds(2));
+  commit_all(state);
+  EXPECT_TRUE(state.finished()) << "two trials after the start, however slow the other";
+  deliver(state, kOne, 1, {0}, seconds(20));
+  commit_all(state, StoreOutcome::duplicate);
+  EXPECT_EQ(state.counters().duplicates, 1U);
+  EXPECT_EQ(out_.all<Ack>(kOne).size(), 1U) << "a late result is let go";
+}
+
+TEST_F(CampaignStateTest, ShortTrialsAreCopiedFromTheEndAndNotBeforeTheyCouldBeDone) {
+  CampaignState state = make(101);
+  join(state, kOne);
+  join(state, kTwo);
+  state.on_message(kOne, Credit{1, 0, 0}, now_, out_);
+  deliver(state, kOne, 1, {0}, milliseconds(1));
+  std::uint64_t newest = out_.all<Lease>(kOne).back().lease;
+  do {
+    state.on_message(kOne, Credit{0, 0, newest}, now_, out_);
+    if (out_.all<Lease>(kOne).back().lease == newest) break;
+    newest = out_.all<Lease>(kOne).back().lease;
+  } while (true);
+  EXPECT_EQ(out_.all<Lease>(kOne).back().last, 101U) << "one holds all that is left";
+  state.on_message(kTwo, Credit{1, 0, 0}, now_, out_);
+  EXPECT_TRUE(out_.all<Lease>(kTwo).empty());
+  now_ += milliseconds(300);
+  state.on_message(kTwo, Heartbeat{{1, 0, 0}, {}}, now_, out_);
+  ASSERT_EQ(out_.all<Lease>(kTwo).size(), 1U);
+}
+
+TEST_F(CampaignStateTest, ATrialThatIsCopiedIsNotLeasedAThirdTimeWhenItsFirstWorkerDies) {
+  CampaignState state = make(2);
+  join(state, kOne);
+  join(state, kTwo);
+  state.on_message(kOne, Credit{1, 0, 0}, now_, out_);
+  state.on_message(kTwo, Credit{1, 0, 0}, now_, out_);
+  deliver(state, kTwo, 1, {1}, seconds(2));
+  state.on_message(kTwo, Credit{1, 0, out_.all<Lease>(kTwo).back().lease}, now_, out_);
+  ASSERT_EQ(out_.all<Lease>(kTwo).size(), 2U);
+  state.on_gone(kOne, "signal Killed", now_, out_);
+  const WorkerId three = std::string(32, '3');
+  join(state, three);
+  state.on_message(three, Credit{1, 0, 0}, now_, out_);
+  ASSERT_TRUE(out_.all<Lease>(three).empty()) << "the copy is under way, and this one is suspected";
+  deliver(state, kTwo, 2, {0}, seconds(2));
+  commit_all(state);
+  EXPECT_TRUE(state.finished());
+}
+
+// ---- a database that cannot be written
+
+TEST_F(CampaignStateTest, NothingIsLeasedWhileTheStoreCannotWriteAndAllGoesOnWhenItCan) {
+  CampaignState state = make(10);
+  join(state, kOne);
+  state.hold_dispatch();
+  state.on_message(kOne, Credit{1, 0, 0}, now_, out_);
+  state.on_message(kOne, Heartbeat{{1, 0, 0}, {}}, now_, out_);
+  state.on_tick(now_, out_);
+  EXPECT_TRUE(out_.all<Lease>(kOne).empty());
+  state.release_dispatch(now_, out_);
+  EXPECT_EQ(out_.all<Lease>(kOne).size(), 1U);
 }
 
 }  // namespace

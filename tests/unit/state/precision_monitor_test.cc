@@ -66,6 +66,7 @@ TEST(PrecisionMonitor, ATrialThatIsMissingHoldsUpTheDecision) {
 TEST(PrecisionMonitor, EndsEachCellByItselfAndNoneBeforeTheMinimum) {
   PrecisionRule constant = rule(0.3);
   constant.metric = "failed";  // 0 in every trial: an interval of no width from the second value on
+  constant.sequence.tuned_for = 10.0;  // says something at 10 values already
   PrecisionMonitor monitor(constant, 2);
   for (const TrialRow& row : rows(30, 1)) monitor.add(row);
   ASSERT_EQ(monitor.reached().size(), 1U);
