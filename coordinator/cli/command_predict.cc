@@ -8,6 +8,7 @@
 #include <span>
 
 #include "coordinator/cli/command.h"
+#include "coordinator/cli/estimate_record.h"
 #include "coordinator/cli/output_path.h"
 #include "coordinator/input/record_file.h"
 #include "coordinator/input/response_file.h"
@@ -30,46 +31,20 @@ struct Predicted {
   OutputPrediction outputs;
 };
 
-/// The response's columns and rows of the record's inputs and outputs, in its order.
-Result<MatrixStack<std::complex<double>>> matching_response(const ResponseTable& table, const Record& record,
-                                                            const std::string& path) {
-  const auto pick = [&](const std::vector<int>& columns, const std::vector<std::string>& names,
-                        const char* role) -> Result<std::vector<Eigen::Index>> {
-    std::vector<Eigen::Index> out;
-    for (const int column : columns) {
-      const std::string& name = record.names[static_cast<std::size_t>(column)];
-      const auto found = std::find(names.begin(), names.end(), name);
-      if (found == names.end()) {
-        return fail(Error{path, 0, role,
-                          "the record's " + std::string(role) + " \"" + name +
-                              "\" is not among those of the response, " + join(names)});
-      }
-      out.push_back(found - names.begin());
-    }
-    return out;
-  };
-  const auto inputs = pick(record.input, table.inputs, "input");
-  if (!inputs) return fail(inputs.error());
-  const auto outputs = pick(record.output, table.outputs, "output");
-  if (!outputs) return fail(outputs.error());
-  if (inputs->size() != table.inputs.size()) {
-    return fail(Error{path, 0, "input",
-                      "the response has the inputs " + join(table.inputs) +
-                          ", the record names fewer of them: a prediction needs all"});
-  }
-  MatrixStack<std::complex<double>> out(static_cast<int>(outputs->size()), static_cast<int>(inputs->size()),
-                                        table.response.count());
-  for (int k = 0; k < out.count(); ++k) out[k] = table.response[k](*outputs, *inputs);
-  return out;
-}
-
 Result<Predicted> predict(const PredictArguments& arguments) {
   const Result<ResponseTable> table = read_response_table(arguments.response);
   if (!table) return fail(table.error());
   Result<Record> record = read_record(arguments.record, arguments.meta);
   if (!record) return fail(record.error());
-  const auto response = matching_response(*table, *record, arguments.response);
+  const std::vector<std::string> inputs = channel_names(*record, record->input);
+  const auto response =
+      matching_response(*table, channel_names(*record, record->output), inputs, arguments.response);
   if (!response) return fail(response.error());
+  if (inputs.size() != table->inputs.size()) {
+    return fail(Error{arguments.response, 0, "input",
+                      "the response has the inputs " + join(table->inputs) +
+                          ", the record names fewer of them: a prediction needs all"});
+  }
   Result<OutputPrediction> outputs =
       predict_outputs(table->frequency_hz, *response, record->channels(record->output),
                       record->channels(record->input), record->rate_hz);

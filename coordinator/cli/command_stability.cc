@@ -37,12 +37,6 @@ struct JudgedRecord {
   EstimateStability stability;
 };
 
-std::vector<std::string> names_of(const Record& record, const std::vector<int>& columns) {
-  std::vector<std::string> out;
-  for (const int c : columns) out.push_back(record.names[static_cast<std::size_t>(c)]);
-  return out;
-}
-
 /// K of u = K (r − y), from --gain or from the record's TOML.
 Result<Eigen::MatrixXd> controller_of(const StabilityArguments& arguments, const Record& record) {
   if (!arguments.gain) {
@@ -70,7 +64,7 @@ Result<JudgedRecord> judge(const StabilityArguments& arguments) {
   const Result<Eigen::MatrixXd> controller = controller_of(arguments, record);
   if (!controller) return fail(controller.error());
   Result<NominalPlant> nominal = read_nominal_plant(
-      arguments.nominal, {names_of(record, record.input), names_of(record, record.output), record.rate_hz, record.hold,
+      arguments.nominal, {channel_names(record, record.input), channel_names(record, record.output), record.rate_hz, record.hold,
                           *controller, estimated->response.frm.frequency_hz});
   if (!nominal) return fail(nominal.error());
   EstimateStability stability = judge_estimate(estimated->response.frm, estimated->response.bias, nominal->loop, arguments.options);

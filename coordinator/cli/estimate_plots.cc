@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <numbers>
 
-#include "coordinator/input/nominal_plant_file.h"
-#include "coordinator/input/response_file.h"
+#include "coordinator/plot/phase_curve.h"
 #include "core/accuracy/response_accuracy.h"
 #include "core/base/text.h"
 #include "core/stats/confidence.h"
@@ -22,12 +20,6 @@ constexpr int kMostDots = 150;  // more lines than this are a curve of their own
 
 double decibel(double magnitude) { return magnitude > 0.0 ? 20.0 * std::log10(magnitude) : kNone; }
 double phase_deg(std::complex<double> g) { return std::arg(g) * kDegrees; }
-
-std::vector<std::string> names_of(const Record& record, const std::vector<int>& columns) {
-  std::vector<std::string> out;
-  for (const int c : columns) out.push_back(record.names[static_cast<std::size_t>(c)]);
-  return out;
-}
 
 /// One element along the lines that hold it.
 struct Element {
@@ -68,45 +60,10 @@ Element element(const EstimatedRecord& e, int i, int j) {
   return out;
 }
 
-/// Phases without jumps: each within 180 deg of the one before.
-std::vector<double> unwrapped(std::vector<double> deg) {
-  for (std::size_t k = 1; k < deg.size(); ++k) deg[k] += 360.0 * std::round((deg[k - 1] - deg[k]) / 360.0);
-  return deg;
-}
-
-/// `low` ... `high` about an unwrapped phase as it is seen between ±180 deg: every turn moved there, with the
-/// points next to it, so that it runs to the edge of the panel, and gaps between the turns.
-plot::Band turns(const std::vector<double>& f, const std::vector<double>& low,
-                 const std::vector<double>& high) {
-  plot::Band out;
-  if (f.empty()) return out;
-  const double first = std::ceil((*std::min_element(low.begin(), low.end()) - 180.0) / 360.0);
-  const double last = std::floor((*std::max_element(high.begin(), high.end()) + 180.0) / 360.0);
-  const auto add = [&](double x, double a, double b) {
-    out.x.push_back(x);
-    out.low.push_back(a);
-    out.high.push_back(b);
-  };
-  for (double turn = 360.0 * first; turn <= 360.0 * last; turn += 360.0) {
-    const auto seen = [&](std::size_t a, std::size_t b) {  // something between these points lies in the panel
-      return std::min(low[a], low[b]) - turn <= 180.0 && std::max(high[a], high[b]) - turn >= -180.0;
-    };
-    for (std::size_t k = 0; k < f.size(); ++k) {
-      if ((k > 0 && seen(k - 1, k)) || seen(k, k) || (k + 1 < f.size() && seen(k, k + 1))) {
-        add(f[k], low[k] - turn, high[k] - turn);
-      } else if (!out.x.empty() && std::isfinite(out.low.back())) {
-        add(f[k], kNone, kNone);
-      }
-    }
-    add(f.back(), kNone, kNone);
-  }
-  return out;
-}
-
 void add_phase_line(plot::Panel& panel, const std::string& name, const std::vector<double>& f,
                     const std::vector<double>& deg, plot::Hue hue, plot::Dash dash) {
-  const std::vector<double> smooth = unwrapped(deg);
-  plot::Band curve = turns(f, smooth, smooth);
+  const std::vector<double> smooth = plot::unwrapped(deg);
+  plot::Band curve = plot::turns(f, smooth, smooth);
   panel.marks.emplace_back(plot::Line{name, std::move(curve.x), std::move(curve.low), hue, dash});
 }
 
@@ -125,14 +82,14 @@ void add_magnitude_band(plot::Panel& panel, const std::string& name, const Eleme
 
 /// arg G ± asin(r/|G|), all phases where the disc reaches zero.
 void add_phase_band(plot::Panel& panel, const std::string& name, const Element& e) {
-  std::vector<double> low = unwrapped(e.deg), high = low;
+  std::vector<double> low = plot::unwrapped(e.deg), high = low;
   for (std::size_t k = 0; k < low.size(); ++k) {
     const double half =
         e.radius[k] < e.magnitude[k] ? std::asin(e.radius[k] / e.magnitude[k]) * kDegrees : 180.0;
     low[k] -= half;
     high[k] += half;
   }
-  plot::Band band = turns(e.f, low, high);
+  plot::Band band = plot::turns(e.f, low, high);
   band.name = name;
   panel.marks.emplace_back(std::move(band));
 }
@@ -209,8 +166,8 @@ void add_estimate(plot::Panel& magnitude, plot::Panel& phase, const EstimatedRec
 }
 
 std::string element_title(const EstimatedRecord& e, int i, int j) {
-  return names_of(e.record, e.record.output)[static_cast<std::size_t>(i)] + " / " +
-         names_of(e.record, e.record.input)[static_cast<std::size_t>(j)];
+  return channel_names(e.record, e.record.output)[static_cast<std::size_t>(i)] + " / " +
+         channel_names(e.record, e.record.input)[static_cast<std::size_t>(j)];
 }
 
 /// An output's two rows of panels, filled by `fill(i, j, upper, lower)`.
@@ -235,57 +192,6 @@ plot::Figure element_grid(const EstimatedRecord& e, const Fill& fill) {
 }
 
 }  // namespace
-
-Result<ReferenceResponse> read_reference_response(const std::string& path, const EstimatedRecord& e) {
-  const FrmEstimate& frm = e.response.frm;
-  const std::vector<std::string> inputs = names_of(e.record, e.record.input),
-                                 outputs = names_of(e.record, e.record.output);
-  ReferenceResponse out;
-  out.name = std::filesystem::path(path).filename().string();
-  if (std::filesystem::path(path).extension() != ".csv") {
-    // Without feedback: the model itself, which has to be stable to have a response.
-    const Eigen::MatrixXd open = Eigen::MatrixXd::Zero(frm.n_in, frm.n_out);
-    const Result<NominalPlant> plant =
-        read_nominal_plant(path, {inputs, outputs, e.record.rate_hz, e.record.hold, open, frm.frequency_hz});
-    if (!plant) return fail(plant.error());
-    out.response = plant->loop.response;
-    return out;
-  }
-  const Result<ResponseTable> table = read_response_table(path);
-  if (!table) return fail(table.error());
-  const auto pick = [&](const std::vector<std::string>& wanted, const std::vector<std::string>& names,
-                        const char* role) -> Result<std::vector<Eigen::Index>> {
-    std::vector<Eigen::Index> at;
-    for (const std::string& name : wanted) {
-      const auto found = std::find(names.begin(), names.end(), name);
-      if (found == names.end())
-        return fail(
-            Error{path, 0, role,
-                  "has no " + std::string(role) + " \"" + name + "\" of the record, it has " + join(names)});
-      at.push_back(found - names.begin());
-    }
-    return at;
-  };
-  const auto rows = pick(outputs, table->outputs, "output"), columns = pick(inputs, table->inputs, "input");
-  if (!rows) return fail(rows.error());
-  if (!columns) return fail(columns.error());
-  out.response.resize(frm.n_out, frm.n_in, frm.line_count());
-  for (int k = 0; k < frm.line_count(); ++k) {
-    out.response[k].setConstant(kNone);
-    const double f = frm.frequency_hz[static_cast<std::size_t>(k)], slack = 1e-9 * f;
-    const auto above = std::lower_bound(table->frequency_hz.begin(), table->frequency_hz.end(), f - slack);
-    if (above == table->frequency_hz.end()) continue;
-    const auto at = static_cast<int>(above - table->frequency_hz.begin());
-    if (*above <= f + slack) {
-      out.response[k] = table->response[at](*rows, *columns);
-    } else if (at > 0) {
-      const double weight = (f - above[-1]) / (*above - above[-1]);
-      out.response[k] = (1.0 - weight) * table->response[at - 1](*rows, *columns) +
-                        weight * table->response[at](*rows, *columns);
-    }
-  }
-  return out;
-}
 
 plot::Figure response_figure(const EstimatedRecord& e, const std::optional<ReferenceResponse>& reference) {
   plot::Figure figure = element_grid(e, [&](int i, int j, plot::Panel& magnitude, plot::Panel& phase) {

@@ -6,19 +6,10 @@
 #include <string>
 
 #include "coordinator/cli/estimate_record.h"
+#include "coordinator/cli/reference_response.h"
 #include "coordinator/plot/figure.h"
 
 namespace fatmc::cli {
-
-/// Responses to compare with, at the estimate's lines; NaN where the reference has none.
-struct ReferenceResponse {
-  std::string name;
-  MatrixStack<std::complex<double>> response;  ///< n_out x n_in, a line
-};
-
-/// The reference at the lines of the estimate: an frm.csv (linear between its lines, none outside), or the
-/// TOML of a MODEL as `fatmc stability` takes it.
-Result<ReferenceResponse> read_reference_response(const std::string& path, const EstimatedRecord& e);
 
 /// Columns are inputs; a row of magnitudes (dB) and one of phases (deg) an output. The band is the 95 %
 /// confidence disc of F(2, 2q) (T 2.207), one standard deviation where the method has no law: |G| ± r and arg

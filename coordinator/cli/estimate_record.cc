@@ -206,6 +206,12 @@ void add_estimate_options(CLI::App& command, EstimateOptions& options) {
                    "scale with V_trim / V_mean; V must be an auxiliary channel");
 }
 
+std::vector<std::string> channel_names(const Record& record, const std::vector<int>& columns) {
+  std::vector<std::string> out;
+  for (const int c : columns) out.push_back(record.names[static_cast<std::size_t>(c)]);
+  return out;
+}
+
 std::string estimate_title(const EstimatedRecord& e) {
   const bool joint = e.method == EstimationMethod::arbitrary && e.records > 1;
   return method_title(e.method) + (joint ? ", " + std::to_string(e.records) + " records together" : "") +

@@ -35,6 +35,9 @@ void add_estimate_options(CLI::App& command, EstimateOptions& options);
 /// property that stands in the way, and what would mend it.
 Result<EstimatedRecord> estimate_records(const EstimateOptions& options, EstimationMethod method);
 
+/// Names of a record's columns.
+std::vector<std::string> channel_names(const Record& record, const std::vector<int>& columns);
+
 /// "fast LPM, indirect"
 std::string estimate_title(const EstimatedRecord& e);
 

@@ -22,7 +22,8 @@ Result<Fields> find_fields(const std::vector<std::string>& names, const std::str
   for (std::size_t k = 0; k < kNeeded.size(); ++k) {
     const auto found = std::find(names.begin(), names.end(), kNeeded[k]);
     if (found == names.end()) {
-      return fail(Error{path, 1, kNeeded[k], "is missing: a response has the columns line,frequency_hz,output,input,re,im"});
+      return fail(Error{path, 1, kNeeded[k],
+                        "is missing: a response has the columns line,frequency_hz,output,input,re,im"});
     }
     fields[k] = static_cast<std::size_t>(found - names.begin());
   }
@@ -71,10 +72,12 @@ Result<ResponseTable> read_response_table(const std::string& path) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     const std::vector<std::string> row = split_csv_row(line);
     if (row.size() != names.size()) {
-      return fail(Error{path, number, "", "has " + std::to_string(row.size()) + " values for " +
-                                              std::to_string(names.size()) + " columns"});
+      return fail(Error{
+          path, number, "",
+          "has " + std::to_string(row.size()) + " values for " + std::to_string(names.size()) + " columns"});
     }
-    if (Status status = add_row(row, *fields, path, number, table, elements); !status) return fail(status.error());
+    if (Status status = add_row(row, *fields, path, number, table, elements); !status)
+      return fail(status.error());
   }
   if (elements.empty()) return fail(Error{path, 2, "", "no row follows the header"});
   for (const auto& [at, value] : elements) {
@@ -90,14 +93,43 @@ Result<ResponseTable> read_response_table(const std::string& path) {
       for (std::size_t j = 0; j < table.inputs.size(); ++j) {
         const auto found = elements.find(std::tuple(f, i, j));
         if (found == elements.end()) {
-          return fail(Error{path, 0, table.outputs[i] + "/" + table.inputs[j],
-                            "is missing at " + shortest(f) + " Hz: every element is needed at every frequency"});
+          return fail(
+              Error{path, 0, table.outputs[i] + "/" + table.inputs[j],
+                    "is missing at " + shortest(f) + " Hz: every element is needed at every frequency"});
         }
         table.response[k](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = found->second;
       }
     }
   }
   return table;
+}
+
+Result<MatrixStack<std::complex<double>>> matching_response(const ResponseTable& table,
+                                                            const std::vector<std::string>& outputs,
+                                                            const std::vector<std::string>& inputs,
+                                                            const std::string& path) {
+  const auto pick = [&](const std::vector<std::string>& wanted, const std::vector<std::string>& names,
+                        const char* role) -> Result<std::vector<Eigen::Index>> {
+    std::vector<Eigen::Index> at;
+    for (const std::string& name : wanted) {
+      const auto found = std::find(names.begin(), names.end(), name);
+      if (found == names.end()) {
+        return fail(Error{path, 0, role,
+                          "the response has no " + std::string(role) + " \"" + name +
+                              "\" of the record, it has " + join(names)});
+      }
+      at.push_back(found - names.begin());
+    }
+    return at;
+  };
+  const auto rows = pick(outputs, table.outputs, "output");
+  if (!rows) return fail(rows.error());
+  const auto columns = pick(inputs, table.inputs, "input");
+  if (!columns) return fail(columns.error());
+  MatrixStack<std::complex<double>> out(static_cast<int>(rows->size()), static_cast<int>(columns->size()),
+                                        table.response.count());
+  for (int k = 0; k < out.count(); ++k) out[k] = table.response[k](*rows, *columns);
+  return out;
 }
 
 }  // namespace fatmc

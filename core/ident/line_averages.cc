@@ -84,6 +84,23 @@ void store_zippered(FrmEstimate& e, int k, int j, const Eigen::VectorXcd& z) {
   e.C_Z[k] = e.C_Z_noise[k].topLeftCorner(e.n_out, e.n_out);
 }
 
+/// A line at which an input is round-off would give a ratio of two round-offs: refused, since its noise may be
+/// round-off, too, and look small. Several inputs are judged by the condition of their line.
+Status check_excitation(const std::vector<MeanSpectra>& all, const FrmEstimate& e) {
+  constexpr double kRoundOff = 1e-12;
+  if (e.n_in != 1) return {};
+  Eigen::VectorXd excited = Eigen::VectorXd::Zero(e.line_count());
+  for (const MeanSpectra& a : all) excited = excited.cwiseMax(a.mean.col(e.n_out).cwiseAbs());
+  const double least = kRoundOff * excited.maxCoeff();
+  for (int k = 0; k < e.line_count(); ++k) {
+    if (excited(k) > least) continue;
+    return fail(Error{"", 0, "line " + std::to_string(e.lines[index(k)]),
+                      "the input is not excited there (round-off of its other lines): leave the line out of "
+                      "excited_lines"});
+  }
+  return {};
+}
+
 Status estimate_zippered(const MeanSpectra& a, ResponseEstimate& out) {
   FrmEstimate& e = out.frm;
   e.estimated.resize(e.n_in, 1, e.line_count());
@@ -173,6 +190,7 @@ Result<ResponseEstimate> estimate_by_line_averages(std::span<const Measurement> 
   e.lines = design.lines;
   for (const int line : design.lines) e.frequency_hz.push_back(line * design.rate_hz / design.period_samples);
   size_estimate(e);
+  if (Status status = check_excitation(all, e); !status) return fail(status.error());
   const int count = static_cast<int>(experiments.size());
   e.q_noise = count * all.front().q;
   e.q = count > e.n_in ? count - e.n_in : e.q_noise;

@@ -8,8 +8,8 @@
 // of the same noise satisfies |V_i|^2 / C_ii ~ F(2, 2q), all channels together V^H C^-1 V ~ n q/(q - n + 1)
 // F(2n, 2(q - n + 1)), the joint law of confidence_regions.h for one input. Hence the radii
 //
-//   one channel             sqrt(C_ii) sqrt F^-1(p; 2, 2(M-1)) (A.11, A.12) all n at once (shadow) sqrt(C_ii)
-//   sqrt(n (M-1)/(M-n) F^-1(p; 2n, 2(M-n)))                          (A.14, A.15)
+//   one channel             sqrt(C_ii) sqrt F^-1(p; 2, 2(M-1))                              (A.11, A.12)
+//   all n at once (shadow)  sqrt(C_ii) sqrt(n (M-1)/(M-n) F^-1(p; 2n, 2(M-n)))               (A.14, A.15)
 //
 // Print has F(1, M-1) and n/(M-n) F(n, M-n): the laws of real variables (a complex one has two parts), and
 // the factor M - 1 is left out of the second. With M = 20 the printed 95 % of one channel would hold 97.9 %.

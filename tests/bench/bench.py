@@ -30,6 +30,10 @@ GOOGLE = {
     "ssv_us_warm": ("bench_robust", "ssv_us_(cold|warm|slicot)$", "us", "ssv_us_slicot", False, "the same"),
     "epoch_ms": ("bench_stability", "epoch_ms", "ms", 1040.0, False,
                  "thesis, section 5.8.1: LPM 0.04 s, mu-analysis about 1 s; bar 2.5 ms"),
+    **{f"{name}_line_us": ("bench_estimators", ".*_line_us", "us", None, False, "")
+       for name in ("etfe", "tlpm", "robust", "lrm", "arbitrary", "joint", "welch")},
+    "monitor_epochs_per_s": ("bench_stability", "monitor_epochs_per_s", "1/s", 1.0, True,
+                             "thesis: about 1; bar 500, ten times the sample rate"),
     "acked_per_s": ("bench_engine", "AckedTrials/100000/2", "1/s", "dask_noop_per_s", True,
                     "Dask distributed in the same run, without storage or keys; bar 20,000 with CURVE, synchronous=FULL"),
     "coordinator_us_per_trial": ("bench_engine", "AckedTrials/100000/2", "us", 50.0, False, "bar"),
@@ -83,6 +87,34 @@ def coverage_campaign_seconds(runs=5):
     return statistics.median(times)
 
 
+def largest_process_mb(pid):
+    """Largest resident set so far of a process and its children, in MB."""
+    largest = 0
+    for process in [str(pid), *pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]:
+        for line in pathlib.Path(f"/proc/{process}/status").read_text().splitlines():
+            if line.startswith("VmHWM:"):
+                largest = max(largest, int(line.split()[1]))
+    return largest / 1024.0
+
+
+def coverage_campaign_memory():
+    """Largest process, coordinator or worker, of the default campaign with 500 trials, looked at every 10 ms."""
+    largest = 0.0
+    with tempfile.TemporaryDirectory() as folder:
+        process = subprocess.Popen([str(BIN / "fatmc"), "run", str(ROOT / "campaigns/coverage/spec.toml"), "--trials", "500",
+                                    "--workers", "2", "--db", f"{folder}/coverage.db"],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while process.poll() is None:
+            try:
+                largest = max(largest, largest_process_mb(process.pid))
+            except (FileNotFoundError, ProcessLookupError):  # it ended between two looks
+                pass
+            time.sleep(0.01)
+    if process.returncode != 0:
+        sys.exit("bench: the coverage campaign failed")
+    return largest
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", action="store_true", help="print JSON lines")
@@ -114,6 +146,8 @@ def main():
         return
     measured["coverage_campaign_s"] = coverage_campaign_seconds()
     emit("coverage_campaign_s", "s", 3.0, False, "bar: 50 trials on 2 cores, start to table")
+    measured["campaign_memory_mb"] = coverage_campaign_memory()
+    emit("campaign_memory_mb", "MB", 200.0, False, "bar: largest process of a campaign")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,10 @@
-// Time of a full epoch of integrity monitoring at the size of T chapter 5, on one core: FFT of 20,000 samples of six
-// channels, LPM of 73 lines, interpolation bias, nominal and robust H-infinity and ssv with both bounds, CSL.
+// Time of a full epoch of integrity monitoring at the size of T chapter 5, on one core: FFT of 20,000 samples
+// of six channels, LPM of 73 lines, interpolation bias, nominal and robust H-infinity and ssv with both
+// bounds, CSL.
 //
 //   epoch_ms       nothing known from before: references new, scalings cold
 //   epoch_warm_ms  the next epoch of a window: QR of the references and scalings of ssv known
+//   monitor_epochs_per_s  an epoch after every sample of a moving window: sliding DFT, then as above
 //   judgement_us_line  of that, the judgement of one line
 // The plant is the loop of a flight in outline: three coupled resonances, gain 0.1, estimates with noise.
 #include <benchmark/benchmark.h>
@@ -17,6 +19,7 @@
 #include "core/random/random_stream.h"
 #include "core/signal/multisine.h"
 #include "core/stability/estimate_stability.h"
+#include "core/stability/stability_monitor.h"
 
 namespace fatmc {
 namespace {
@@ -37,7 +40,8 @@ SampledModel plant() {
   for (int k = 0; k < 3; ++k) {
     const double w = 2.0 * std::numbers::pi * frequency[k] / kRate;
     const double radius = std::exp(-0.2 * w);
-    m.a.block(2 * k, 2 * k, 2, 2) << radius * std::cos(w), radius * std::sin(w), -radius * std::sin(w), radius * std::cos(w);
+    m.a.block(2 * k, 2 * k, 2, 2) << radius * std::cos(w), radius * std::sin(w), -radius * std::sin(w),
+        radius * std::cos(w);
     m.b.row(2 * k) = w * mix.row(k);
     m.c.col(2 * k) = mix.col(k);
   }
@@ -126,6 +130,31 @@ void epoch_warm(benchmark::State& state) {
   report_met(state, last);
 }
 BENCHMARK(epoch_warm)->Name("epoch_warm_ms")->Unit(benchmark::kMillisecond);
+
+void monitor(benchmark::State& state) {
+  const Flight& f = flight();
+  StabilityMonitor monitor(f.grid, 3, f.nominal, {});
+  std::vector<double> y(3), u(3), r(3);
+  int next = 0;
+  const auto push = [&] {
+    for (int c = 0; c < 3; ++c) {
+      const auto at = static_cast<std::size_t>(c);
+      y[at] = f.outputs(next, c);
+      u[at] = f.inputs(next, c);
+      r[at] = f.references(next, c);
+    }
+    monitor.push(y, u, r);
+    next = (next + 1) % kSamples;
+  };
+  for (int i = 0; i < kSamples; ++i) push();
+  for (auto _ : state) {
+    push();
+    benchmark::DoNotOptimize(monitor.epoch().band.p_total_ssv);
+  }
+  state.counters["monitor_epochs_per_s"] =
+      benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+BENCHMARK(monitor)->Name("monitor_epochs_per_s")->Unit(benchmark::kMillisecond);
 
 void judgement(benchmark::State& state) {
   const Flight& f = flight();

@@ -144,6 +144,11 @@ refused(["n-e", "60 excited lines"], good, "--n-e", "40")
 refused(["r1 and r2", "phases of its own"], record("same", same=True))
 for method in ("tlpm", "etfe"):
     refused(["one experiment"], good, "--method", method)
+silent = random.Random(8)
+for method in ("tlpm", "etfe"):
+    r, _ = multisine(silent, [k for k in LINES if k != 20])
+    refused(["line 20", "not excited", "excited_lines"],
+            write("silent", {"u": r, "y": [3 * v for v in r]}, {"input": ["u"], "output": ["y"]}, PERIODIC), "--method", method)
 quiet = record("quiet", second=0.0, input_noise=0.0)
 refused(["u2"], quiet)  # a channel that does not move
 refused(["follow the references"], record("still", second=1e-18, input_noise=0.0, noise=0.0))

@@ -49,6 +49,24 @@ U, Y = (np.stack(part) for part in zip(*(spectra(name) for name in sweeps)))
 raw = np.zeros((U.shape[1], 2, 2), complex)
 for pair in ((0, 1), (2, 3)):
     raw += np.moveaxis(Y[list(pair)], 0, -1) @ np.linalg.inv(np.moveaxis(U[list(pair)], 0, -1)) / 2
+
+
+def smoothed(n):
+    """One polynomial of degree 2 over 2 n + 1 bins of all sweeps, whether it fits or not."""
+    lines = U.shape[1]
+    window = np.clip(np.arange(lines), n, lines - 1 - n)[:, None] + np.arange(-n, n + 1)
+    powers = ((window - np.arange(lines)[:, None]) / n)[:, :, None] ** np.arange(3)
+    regressor = np.einsum("kws,ekwj->kewsj", powers, U[:, window]).reshape(lines, -1, 6)
+    outputs = np.moveaxis(Y[:, window], 0, 1).reshape(lines, -1, 2)
+    adjoint = np.conj(np.swapaxes(regressor, 1, 2))
+    return np.swapaxes(np.linalg.solve(adjoint @ regressor, adjoint @ outputs)[:, :2], 1, 2)
+
+
+for first in (0, 1):
+    scatter = (np.abs(Y[first] - Y[first + 2]) ** 2).sum(0) / (2.0 * (np.abs(Y[first]) ** 2).sum(0))
+    print(f"scatter between two {sweeps[first][:-1]} sweeps: {100 * scatter[0]:.2f} % of the energy in y1, {100 * scatter[1]:.2f} % in y2")
+for n in (2, 4, 9):
+    print(f"order 2 over {2 * n + 1} bins without a guard: " + ", ".join(f"{name} {vaf(smoothed(n), name).round(2)} %" for name in BARS))
 estimated = np.zeros_like(raw)
 with open(work / "sweeps" / "frm.csv", encoding="utf-8") as file:
     for row in csv.DictReader(file):

@@ -51,6 +51,20 @@ TEST(FastLpm, RecoversAPolynomialResponseToRoundOffIndirectly) {
   }
 }
 
+TEST(FastLpm, RecoversAllElementsAtAllLinesFromZipperedReferences) {
+  RandomStream stream({12, 0, 0, 0}, "test");
+  const LpmGrid grid = make_grid(table_lines(), 3);
+  const Response g = random_polynomial(3, 3, 1, stream), g_ur = random_polynomial(3, 3, 1, stream);
+  LineSpectra reference = random_phases(grid, stream);
+  for (int k = 0; k < grid.line_count(); ++k) {
+    for (int j = 0; j < 3; ++j) reference(k, j) *= k % 3 == j ? 1.0 : 0.0;
+  }
+  const Spectra z = closed_loop(grid, reference, g, g_ur, Eigen::MatrixXcd::Zero(6, 6), 3, stream);
+  FastLpm lpm(grid, 3);
+  lpm.load_spectra(z.outputs, z.inputs);
+  EXPECT_LT(worst_relative_error(grid, lpm.indirect(reference), g), 1e-10);
+}
+
 TEST(FastLpm, GivesTheSameBitsWithAPreparedDesign) {
   RandomStream stream({3, 0, 0, 0}, "test");
   const LpmGrid grid = make_grid(table_lines(), 3);

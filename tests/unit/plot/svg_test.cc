@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "coordinator/plot/axis_scale.h"
 #include "coordinator/plot/marks.h"
+#include "coordinator/plot/phase_curve.h"
 
 namespace fatmc::plot {
 namespace {
@@ -91,6 +93,23 @@ TEST(Marks, ThinManyPointsWithoutLosingAPeak) {
   const std::string svg = mark_svg(line, x, y);
   EXPECT_LT(svg.size(), 8000U);
   EXPECT_THAT(svg, HasSubstr("L51.2 0L"));
+}
+
+TEST(PhaseCurve, RunsToTheEdgeAndComesBackOnTheOtherSide) {
+  const std::vector<double> phase = unwrapped({90.0, 170.0, -170.0, -90.0, 100.0});
+  EXPECT_THAT(phase, ElementsAre(90.0, 170.0, 190.0, 270.0, 100.0));
+  const Band curve = turns({1.0, 2.0, 3.0, 4.0, 5.0}, phase, phase);
+  // The turn of 0: all but the middle of what lies above 180; the turn of 360: what lies above, and its
+  // neighbours.
+  EXPECT_EQ(curve.x.size(), curve.low.size());
+  std::vector<double> finite;
+  for (const double value : curve.low) {
+    if (std::isfinite(value)) finite.push_back(value);
+  }
+  EXPECT_THAT(finite, ElementsAre(90.0, 170.0, 190.0, 270.0, 100.0, -190.0, -170.0, -90.0, -260.0));
+  const Band all = turns({1.0, 2.0}, {-180.0, -180.0}, {180.0, 180.0});
+  EXPECT_EQ(std::count(all.high.begin(), all.high.end(), 180.0), 2);
+  EXPECT_TRUE(turns({}, {}, {}).x.empty());
 }
 
 TEST(Svg, HoldsEveryPanelAndEachNameOnce) {

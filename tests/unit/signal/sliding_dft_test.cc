@@ -50,8 +50,9 @@ TEST(SlidingDft, IsTheDftOfTheWindowWhereverItStands) {
   SlidingDft sliding(kWindow, kBins, 2);
   for (int n = 0; n < static_cast<int>(x.size()); ++n) {
     sliding.push(x[static_cast<std::size_t>(n)]);
-    if (n % 13 == 0 || n % kWindow >= kWindow - 2 || n % kWindow <= 1)
+    if (n % 13 == 0 || n % kWindow >= kWindow - 2 || n % kWindow <= 1) {
       EXPECT_LT(error_after(sliding, x, n), 1e-11);
+    }
   }
   EXPECT_TRUE(sliding.full());
 }
