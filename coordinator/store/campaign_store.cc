@@ -215,7 +215,9 @@ Result<int> CampaignStore::migrate(const std::string& path) {
     SQLite::Database db(path, SQLite::OPEN_READWRITE, kBusyMs);
     const Result<StoredCampaign> found = read_campaign(db, path);
     if (!found) return fail(found.error());
-    return fatmc::migrate(db, found->schema);
+    const int from = fatmc::migrate(db, found->schema);
+    ControlTables(db).create();
+    return from;
   } catch (const SQLite::Exception& e) {
     if (!is_fault_of_file(e)) throw;
     return fail(database_error(e, path));
