@@ -184,6 +184,9 @@ Result<CampaignStore> CampaignStore::open(WriterLock held, const std::string& pa
       stored = std::move(*found);
     }
     auto parts = std::make_unique<Parts>(std::move(held), path);
+    // EXTRA while the file goes over to WAL, so that the removal of the rollback journal is on disk, too: one that
+    // came back after a power cut would undo the change, and with it all that the WAL holds.
+    parts->db.exec("PRAGMA synchronous = EXTRA");
     parts->db.exec("PRAGMA journal_mode = WAL");
     parts->db.exec("PRAGMA synchronous = FULL");
     if (stored) fatmc::migrate(parts->db, stored->schema);
@@ -212,7 +215,9 @@ Result<int> CampaignStore::migrate(const std::string& path) {
     SQLite::Database db(path, SQLite::OPEN_READWRITE, kBusyMs);
     const Result<StoredCampaign> found = read_campaign(db, path);
     if (!found) return fail(found.error());
-    return fatmc::migrate(db, found->schema);
+    const int from = fatmc::migrate(db, found->schema);
+    ControlTables(db).create();
+    return from;
   } catch (const SQLite::Exception& e) {
     if (!is_fault_of_file(e)) throw;
     return fail(database_error(e, path));
