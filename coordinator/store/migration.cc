@@ -58,6 +58,7 @@ int migrate(SQLite::Database& db, int found) {
   SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
   for (const ViewDescription& view : kViews) db.exec("DROP VIEW IF EXISTS " + std::string(view.name));
   if (found < 2) migrate_1_to_2(db);
+  db.exec(kControlSql);
   db.exec(views_sql());
   db.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
   record_event(db, "migrated",

@@ -66,7 +66,9 @@ TEST(ProgressText, SaysHowFarHowFastAndHowPrecise) {
   cli::RateMeter meter;
   meter.add(cli::RateMeter::Seconds(0), 0);
   meter.add(cli::RateMeter::Seconds(2), 100);
-  cli::Progress progress{.done = 100, .total = 300};
+  cli::Progress progress;
+  progress.done = 100;
+  progress.total = 300;
   EXPECT_EQ(cli::progress_text(progress, meter), "100/300 trials, 50/s, ETA 0:04");
   progress.failed = 3;
   progress.precision = "x 0.95 in [0.9, 1]";
