@@ -14,7 +14,7 @@ import tempfile
 import numpy
 from scipy import stats
 
-TRIALS = 8
+TRIALS = 24
 LARGEST_TRIAL_BYTES = 40_000
 
 
