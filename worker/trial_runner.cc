@@ -5,6 +5,7 @@
 #include <chrono>
 #include <exception>
 
+#include "campaigns/base/prepared_trials.h"
 #include "campaigns/registry_trials.h"
 #include "core/base/check.h"
 
@@ -24,16 +25,14 @@ Result<std::shared_ptr<LoadedCampaign>> LoadedCampaign::load(std::string id, con
   return campaign;
 }
 
-bool LoadedCampaign::holds(const Lease& lease) const {
-  return lease.cell < spec_.cells.size() && lease.last <= spec_.cells[lease.cell].repetitions;
-}
+bool LoadedCampaign::holds(const Lease& lease) const { return lease.cell < spec_.cells.size(); }
 
 Result<const PreparedCell*> LoadedCampaign::prepared(std::uint32_t cell) {
   Prepared& own = *cells_[cell];
   const std::lock_guard lock(own.mutex);
   if (own.error) return fail(*own.error);
   if (own.cell == nullptr) {
-    auto made = study_->prepare(spec_, cell);
+    auto made = prepare_trials(*study_, spec_, cell);
     if (!made) {
       own.error = made.error();
       return fail(made.error());

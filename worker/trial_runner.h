@@ -27,7 +27,7 @@ class LoadedCampaign {
   Result<ComputedRow> run(TrialKey key);
 
   [[nodiscard]] const std::string& id() const { return id_; }
-  /// Whether a lease lies within the plan.
+  /// Whether its cell exists. Repetitions have no end here: the coordinator may extend a cell while it runs.
   [[nodiscard]] bool holds(const Lease& lease) const;
 
  private:

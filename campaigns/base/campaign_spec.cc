@@ -1,5 +1,8 @@
 #include "campaigns/base/campaign_spec.h"
 
+#include <set>
+
+#include "campaigns/base/cell_grid.h"
 #include "campaigns/base/decoder.h"
 #include "core/base/check.h"
 
@@ -33,11 +36,13 @@ TrialSeed CampaignSpec::trial_seed(TrialKey trial_key) const {
 std::string CampaignSpec::identity() const {
   Tree meaning = tree;
   meaning.set("cell", Tree{Tree::Array{}, {}, 0});
-  meaning.set("published", Tree{std::string(), {}, 0});  // figures to compare with change no result
+  meaning.set("published", Tree{std::string(), {}, 0});          // figures to compare with change no result
+  for (const char* key : {"stop", "watch"}) meaning.erase(key);  // nor does when to stop
   std::string text = canonical_text(meaning) + "seed " + std::to_string(seed);
   for (const Cell& cell : cells) {
     Tree own = cell.tree;
     own.set("repetitions", Tree{std::int64_t{0}, {}, 0});
+    own.erase("priority");
     text += canonical_text(own);
   }
   return hex(sha256(text));
@@ -58,10 +63,37 @@ void check_name(Decoder& table, const std::string& name) {
 
 }  // namespace
 
+namespace {
+
+Status decode_cells(Decoder& top, std::vector<Cell>& cells) {
+  std::set<std::string> names;
+  for (const Tree* entry : top.tables("cell")) {
+    Decoder table(*entry, "cell");
+    Cell cell;
+    cell.name = table.text("name");
+    cell.repetitions =
+        static_cast<std::uint64_t>(table.integer("repetitions", {.low = 1, .high = 1'000'000'000}));
+    cell.priority = table.integer("priority", {.low = -1000, .high = 1000}, 0);
+    cell.disperse = table.boolean("disperse", true);
+    table.table("set", false);
+    cell.tree = *entry;
+    if (!names.insert(cell.name).second) {
+      table.reject("name", "\"" + cell.name + "\" names two cells, write another name");
+    }
+    if (table.error()) return fail(*table.error());
+    cells.push_back(std::move(cell));
+  }
+  return {};
+}
+
+}  // namespace
+
 Result<CampaignSpec> decode_campaign(const Tree& tree) {
+  Result<Tree> expanded = expand_factors(tree);
+  if (!expanded) return fail(expanded.error());
   CampaignSpec spec;
-  spec.tree = tree;
-  Decoder top(tree, "");
+  spec.tree = std::move(*expanded);
+  Decoder top(spec.tree, "");
   if (const Tree* campaign = top.table("campaign")) {
     Decoder table(*campaign, "campaign");
     spec.study = table.text("study");
@@ -70,21 +102,17 @@ Result<CampaignSpec> decode_campaign(const Tree& tree) {
     check_name(table, spec.name);
     top.take(table.finish());
   }
-  for (const Tree* entry : top.tables("cell")) {
-    Decoder table(*entry, "cell");
-    Cell cell;
-    cell.name = table.text("name");
-    cell.repetitions =
-        static_cast<std::uint64_t>(table.integer("repetitions", {.low = 1, .high = 1'000'000'000}));
-    cell.tree = *entry;
-    for (const Cell& other : spec.cells) {
-      if (other.name == cell.name)
-        table.reject("name", "\"" + cell.name + "\" names two cells, write another name");
-    }
-    if (table.error()) top.take(fail(*table.error()));
-    spec.cells.push_back(std::move(cell));
-  }
+  top.take(decode_cells(top, spec.cells));
   if (top.error()) return fail(*top.error());
+  auto dispersions = decode_dispersions(spec.tree);
+  if (!dispersions) return fail(dispersions.error());
+  spec.dispersions = std::move(*dispersions);
+  auto keep = decode_keep(spec.tree);
+  if (!keep) return fail(keep.error());
+  spec.keep = *keep;
+  auto precision = decode_precision(spec.tree);
+  if (!precision) return fail(precision.error());
+  spec.precision = std::move(*precision);
   return spec;
 }
 

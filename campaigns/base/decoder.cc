@@ -8,12 +8,6 @@
 namespace fatmc {
 namespace {
 
-std::optional<double> as_real(const Tree& entry) {
-  if (const auto* number = std::get_if<double>(&entry.value)) return *number;
-  if (const auto* integer = std::get_if<std::int64_t>(&entry.value)) return static_cast<double>(*integer);
-  return std::nullopt;
-}
-
 std::string allowed(RealRange range) {
   const bool low = range.low > -std::numeric_limits<double>::max();
   const bool high = range.high < std::numeric_limits<double>::max();
@@ -75,7 +69,7 @@ void Decoder::wrong_kind(std::string_view key, const Tree& entry, std::string_vi
 double Decoder::real(std::string_view key, RealRange range, std::optional<double> fallback) {
   const Tree* entry = get(key, !fallback);
   if (entry == nullptr) return fallback.value_or(0.0);
-  const std::optional<double> number = as_real(*entry);
+  const std::optional<double> number = real_value(*entry);
   if (!number) {
     wrong_kind(key, *entry, "a number");
     return 0.0;
@@ -144,7 +138,7 @@ std::vector<double> Decoder::reals(std::string_view key, std::size_t count, Real
   }
   std::vector<double> out;
   for (const Tree& item : array->items) {
-    const std::optional<double> number = as_real(item);
+    const std::optional<double> number = real_value(item);
     if (!number) {
       reject(key, "holds " + with_article(kind_name(item)) + ", write a list of numbers");
       return values;
@@ -201,7 +195,7 @@ std::vector<std::vector<double>> Decoder::matrix(std::string_view key, std::size
     }
     out.emplace_back();
     for (const Tree& item : items->items) {
-      const std::optional<double> number = as_real(item);
+      const std::optional<double> number = real_value(item);
       if (!number || !std::isfinite(*number) || *number < range.low || *number > range.high) {
         reject(key, "holds a wrong element, " + allowed(range));
         return zero;

@@ -3,10 +3,12 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "campaigns/base/campaign_spec.h"
+#include "campaigns/base/trial_record.h"
 #include "campaigns/base/trial_row.h"
 #include "core/base/error.h"
 
@@ -19,6 +21,8 @@ class PreparedCell {
   virtual ~PreparedCell() = default;
   /// The trial: a pure function of spec, cell and repetition. Expected failures are outcomes, not exceptions.
   [[nodiscard]] virtual TrialRow run(std::uint64_t repetition) const = 0;
+  /// The flight behind that row, flown again; none where the study flies nothing.
+  [[nodiscard]] virtual std::optional<TrialRecord> record(std::uint64_t) const { return std::nullopt; }
 };
 
 struct TrialStudy {

@@ -28,6 +28,18 @@ void Tree::set(std::string_view key, Tree entry) {
   entries->entries.emplace_back(std::string(key), std::move(entry));
 }
 
+void Tree::erase(std::string_view key) {
+  if (auto* entries = std::get_if<Table>(&value)) {
+    std::erase_if(entries->entries, [&](const auto& entry) { return entry.first == key; });
+  }
+}
+
+std::optional<double> real_value(const Tree& tree) {
+  if (const auto* number = std::get_if<double>(&tree.value)) return *number;
+  if (const auto* integer = std::get_if<std::int64_t>(&tree.value)) return static_cast<double>(*integer);
+  return std::nullopt;
+}
+
 std::string_view kind_name(const Tree& tree) {
   static constexpr std::string_view kNames[] = {"table", "array", "string", "number", "integer", "boolean"};
   return kNames[tree.value.index()];

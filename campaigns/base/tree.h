@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -33,9 +34,14 @@ struct Tree {
   [[nodiscard]] const Tree* find(std::string_view key) const;
   /// Sets or replaces an entry of a table.
   void set(std::string_view key, Tree entry);
+  /// Removes an entry of a table, if it is there.
+  void erase(std::string_view key);
 
   bool operator==(const Tree&) const = default;
 };
+
+/// The value of a number or an integer.
+std::optional<double> real_value(const Tree& tree);
 
 /// "table", "array", "string", "number", "integer" or "boolean", for messages.
 std::string_view kind_name(const Tree& tree);

@@ -17,5 +17,9 @@ inline constexpr std::string_view kInputSnr =
 inline constexpr std::string_view kDegreesOfFreedom = "degrees_of_freedom";  // metrics
 inline constexpr std::string_view kElements = "elements_per_line";
 inline constexpr std::string_view kInputs = "inputs";
+/// Share of the elements of all lines whose 95 % region holds G0: without bias (5.13), and max(0, |e| - b) in
+/// it.
+inline constexpr std::string_view kInside95 = "share_inside_95";
+inline constexpr std::string_view kInsideExtended95 = "share_inside_95_extended";
 
 }  // namespace fatmc::coverage

@@ -11,6 +11,7 @@
 #include "campaigns/coverage/row_arrays.h"
 #include "core/ident/fast_lpm.h"
 #include "core/ident/interpolation_bias.h"
+#include "core/stats/confidence.h"
 
 namespace fatmc::coverage {
 namespace {
@@ -53,6 +54,16 @@ class CoverageTrials final : public PreparedCell {
     return row;
   }
 
+  std::optional<TrialRecord> record(std::uint64_t repetition) const override {
+    TrialSeed seed = seed_;
+    seed.repetition = repetition;
+    std::unique_ptr<Workspace> workspace = take_workspace();
+    flight_.fly(reference_signal(cell_.experiment, seed), seed, workspace->record);
+    TrialRecord out = trial_record(workspace->record, cell_.experiment, flight_.aircraft());
+    give_back(std::move(workspace));
+    return out;
+  }
+
  private:
   // Trials of one cell run in several threads at once; each takes a workspace that no other has.
   std::unique_ptr<Workspace> take_workspace() const {
@@ -93,6 +104,8 @@ class CoverageTrials final : public PreparedCell {
   void store(const FrmEstimate& frm, const MatrixStack<double>& bias,
              const std::optional<MatrixStack<double>>& printed, TrialRow& row) const {
     std::vector<double> re, im, variance, b, b_printed, snr;
+    const double quantile = f_quantile_2_2q(0.95, frm.q);
+    std::size_t inside = 0, inside_extended = 0;
     for (int k = 0; k < frm.line_count(); ++k) {
       for (int i = 0; i < kAxes; ++i) {
         for (int j = 0; j < kAxes; ++j) {
@@ -101,6 +114,10 @@ class CoverageTrials final : public PreparedCell {
           im.push_back(error.imag());
           variance.push_back(frm.variance(k, i, j));
           b.push_back(bias[k](i, j));
+          const double limit = quantile * frm.variance(k, i, j);
+          const double beyond = std::max(0.0, std::abs(error) - bias[k](i, j));
+          inside += std::norm(error) <= limit ? 1 : 0;
+          inside_extended += beyond * beyond <= limit ? 1 : 0;
           if (printed) b_printed.push_back((*printed)[k](i, j));
         }
       }
@@ -110,6 +127,9 @@ class CoverageTrials final : public PreparedCell {
     row.metrics.emplace_back(kDegreesOfFreedom, frm.q);
     row.metrics.emplace_back(kElements, kAxes * kAxes);
     row.metrics.emplace_back(kInputs, kAxes);
+    row.metrics.emplace_back(kInside95, static_cast<double>(inside) / static_cast<double>(re.size()));
+    row.metrics.emplace_back(kInsideExtended95,
+                             static_cast<double>(inside_extended) / static_cast<double>(re.size()));
     for (int j = 0; j < kAxes; ++j) {
       double low = std::numeric_limits<double>::infinity();
       for (std::size_t k = 0; k < snr.size(); k += kAxes)
@@ -158,10 +178,12 @@ Result<std::unique_ptr<PreparedCell>> prepare(const CampaignSpec& spec, std::uin
   };
   auto flight = Flight::prepare(cell->aircraft, cell->experiment.flight);
   if (!flight) {
-    Error error = locate_flight_error(flight.error(), *spec.tree.find("model"), *spec.tree.find("experiment"));
+    Error error =
+        locate_flight_error(flight.error(), *spec.tree.find("model"), *spec.tree.find("experiment"));
     // The cell may have put another value in the experiment's place.
     const std::string key = error.key.substr(error.key.rfind('.') + 1);
-    if (const Tree* own = spec.cells.at(index).tree.find(key)) error = {own->file, own->line, "cell." + key, error.message};
+    if (const Tree* own = spec.cells.at(index).tree.find(key))
+      error = {own->file, own->line, "cell." + key, error.message};
     return fail(std::move(error));
   }
   const Excitation& excitation = cell->experiment.excitation;

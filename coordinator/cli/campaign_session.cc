@@ -9,15 +9,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <optional>
 #include <random>
-#include <set>
 
-#include "campaigns/registry_summaries.h"
+#include "coordinator/cli/campaign_watch.h"
 #include "coordinator/cli/database_use.h"
 #include "coordinator/cli/progress_line.h"
-#include "coordinator/report/tables.h"
+#include "coordinator/cli/session_summary.h"
 #include "coordinator/server/campaign_server.h"
 #include "coordinator/server/local_workers.h"
 #include "coordinator/state/campaign_state.h"
@@ -29,15 +27,19 @@ namespace fatmc::cli {
 namespace {
 
 constexpr std::chrono::milliseconds kByePatience{1500};
+constexpr std::chrono::milliseconds kLauncherPatience{10'000};
 
 // results/last names the databases of the last run, a path a line, for `fatmc tables` without arguments.
 // A convenience, so that failing is no failure of the run.
-void write_last(const std::string& database) {
+void write_last(const SessionOptions& options) {
   const std::string fresh = "results/last.new";
   std::error_code error;
   std::filesystem::create_directories("results", error);
   std::ofstream out(fresh);
-  out << std::filesystem::absolute(database).lexically_normal().string() << "\n";
+  std::vector<std::string> databases = options.earlier;
+  databases.push_back(options.database);
+  for (const std::string& path : databases)
+    out << std::filesystem::absolute(path).lexically_normal().string() << "\n";
   out.close();
   if (!error && !out) error = std::error_code(errno, std::generic_category());
   if (!error) std::filesystem::rename(fresh, "results/last", error);
@@ -46,71 +48,6 @@ void write_last(const std::string& database) {
         stderr, "fatmc: warning: results/last: cannot be written (%s), name the database to `fatmc tables`\n",
         error.message().c_str());
   }
-}
-
-void print_outcomes(const CampaignReader& reader, const std::string& database) {
-  std::map<std::string, std::uint64_t> counts;
-  std::uint64_t stored = 0;
-  for (const OutcomeCount& count : reader.outcomes()) {
-    counts[count.outcome] += count.trials;
-    stored += count.trials;
-  }
-  std::string text = std::to_string(counts["ok"]) + " ok";
-  for (const auto& [outcome, trials] : counts) {
-    if (outcome != "ok") text += ", " + std::to_string(trials) + " " + outcome;
-  }
-  std::printf("%llu of %llu trials: %s\ndatabase: %s\n", static_cast<unsigned long long>(stored),
-              static_cast<unsigned long long>(reader.spec().trial_count()), text.c_str(), database.c_str());
-  std::fflush(stdout);
-}
-
-Exit print_summary(const std::string& database) {
-  Result<CampaignReader> reader = CampaignReader::open(database);
-  if (!reader) return report(reader.error());
-  print_outcomes(*reader, database);
-  const SummaryStudy* study = find_summary_study(reader->spec().study);
-  if (study == nullptr) return Exit::done;
-  const auto tables = study->tables(reader->spec(), reader->rows());
-  if (!tables) {
-    report(tables.error());
-    return Exit::failed;
-  }
-  // Curves take many rows: they wait for `fatmc tables`.
-  std::vector<TableRow> shown;
-  std::set<std::string> curves;
-  for (const TableRow& row : *tables) {
-    if (row.table.starts_with("Fig."))
-      curves.insert(row.table);
-    else
-      shown.push_back(row);
-  }
-  std::printf("\n");
-  if (tables->empty()) {
-    std::printf("no trial gave an estimate, so there is no table; fatmc query %s --view failures tells why\n",
-                database.c_str());
-    return Exit::done;
-  }
-  print_tables(shown, TableFormat::text);
-  for (const std::string& name : curves) {
-    std::printf("\n%s: fatmc tables %s --only \"%s\"\n", name.c_str(), database.c_str(), name.c_str());
-  }
-  return Exit::done;
-}
-
-// Trials that were given up make a campaign partial.
-Exit report_quarantine(const SessionOptions& options) {
-  Result<CampaignReader> reader = CampaignReader::open(options.database);
-  if (!reader) return report(reader.error());
-  std::uint64_t given_up = 0;
-  for (const OutcomeCount& count : reader->outcomes())
-    if (count.outcome == kQuarantined) given_up += count.trials;
-  if (given_up == 0) return Exit::done;
-  std::fprintf(
-      stderr,
-      "fatmc: %llu trials are quarantined, since each killed its worker three times; fatmc query %s --view "
-      "failures tells how, and this tries them again: %s --retry-quarantined\n",
-      static_cast<unsigned long long>(given_up), options.database.c_str(), options.resume_command.c_str());
-  return Exit::partial;
 }
 
 void report_counters(const CampaignState& state, std::uint64_t malformed) {
@@ -164,6 +101,18 @@ Result<Place> take_place(const SessionOptions& options) {
   return Place{std::move(program), std::move(worker_keys), std::move(*lock), std::move(*socket)};
 }
 
+std::vector<PlanCell> plan_of_shard(const CampaignSpec& spec, const SessionOptions& options,
+                                    CampaignStore& store) {
+  std::vector<PlanCell> plan =
+      store.plan(spec, options.retry_quarantined ? StoredTrials::results : StoredTrials::all);
+  for (PlanCell& cell : plan) {
+    const auto [first, last] = options.shard.range(cell.repetitions);
+    cell.elsewhere.insert(0, first);
+    cell.elsewhere.insert(last, cell.repetitions);
+  }
+  return plan;
+}
+
 // Apart from those of the coordinator before, whatever became of the clock meanwhile.
 std::uint64_t random_lease() {
   std::random_device device;
@@ -175,16 +124,21 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
                           CampaignStore& store) {
   StateOptions state_options;
   state_options.first_lease = random_lease();
-  const StoredTrials counted = options.retry_quarantined ? StoredTrials::results : StoredTrials::all;
-  CampaignState state(store.plan(spec, counted), Welcome{spec.identity(), spec.tree, 0}, build_hash(),
-                      state_options);
+  CampaignState state(plan_of_shard(spec, options, store), Welcome{spec.identity(), spec.tree, 0},
+                      build_hash(), state_options);
+  CampaignWatch watch(spec, options.database, options.shard.count > 1, state, store);
   if (state.finished()) {
-    write_last(options.database);
+    write_last(options);
     return std::nullopt;
   }
   const std::string endpoint = place.socket.endpoint();
   CampaignServer server(std::move(place.socket), {}, state, store);
-  if (options.workers == 0) {
+  std::unique_ptr<Launcher> launcher;
+  if (options.launcher) {
+    Result<std::unique_ptr<Launcher>> made = options.launcher(endpoint);
+    if (!made) return report(made.error());
+    launcher = std::move(*made);
+  } else if (options.workers == 0) {
     std::fprintf(stderr, "fatmc: %llu trials to do; start workers by: fatmc-worker --connect %s%s\n",
                  static_cast<unsigned long long>(state.planned() - state.stored()), endpoint.c_str(),
                  options.keys.empty() ? "" : (" " + shell_line({"--keys", options.keys})).c_str());
@@ -197,25 +151,36 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
       static_cast<unsigned>(std::min<std::uint64_t>(options.workers, state.planned() - state.stored()));
   worker_options.verbose = options.verbose;
   LocalWorkers workers(worker_options);
-  ProgressLine progress(state.planned());
-  progress.show(state.stored());
+  ProgressLine progress;
+  progress.show(watch.progress());
   workers.start();
   ServerHooks hooks;
   bool last_is_written = false;
   hooks.on_tick = [&] {
-    progress.show(state.stored());
+    watch.on_tick(server);
+    progress.show(watch.progress());
+    if (launcher) {
+      launcher->tick({state.planned() - state.stored(), state.stored(), state.workers().size()},
+                     std::chrono::steady_clock::now());
+    }
     if (last_is_written || state.stored() == 0) return;
     last_is_written = true;
-    write_last(options.database);
+    write_last(options);
+  };
+  hooks.on_committed = [&](const StoreRequest& request, const StoreReport& report) {
+    watch.on_committed(request, report, server);
   };
   hooks.on_child = [&] {
-    for (const EndedProcess& ended : workers.reap(state.counters().results)) server.on_process_ended(ended.pid, ended.how);
+    for (const EndedProcess& ended : workers.reap(state.counters().results))
+      server.on_process_ended(ended.pid, ended.how);
   };
-  hooks.failure = [&] { return workers.failure(); };
+  hooks.failure = [&] { return launcher ? launcher->failure() : workers.failure(); };
   const ServerEnd end = server.run(hooks);
-  progress.finish(state.stored());
-  if (!last_is_written && state.stored() > 0) write_last(options.database);
+  progress.finish(watch.progress());
+  watch.on_end(end == ServerEnd::failed);
+  if (!last_is_written && state.stored() > 0) write_last(options);
   workers.stop(kByePatience);
+  if (launcher) launcher->stop(kLauncherPatience);
   report_counters(state, server.malformed());
   if (end == ServerEnd::finished) return std::nullopt;
   const std::string resume = "; what is stored stays, go on by: " + options.resume_command;
@@ -225,35 +190,31 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
                  static_cast<unsigned long long>(state.planned()), resume.c_str());
     return Exit::partial;
   }
-  std::fprintf(stderr, "fatmc: %s%s%s%s\n", workers.failure().c_str(),
-               state.last_refusal().empty() ? "" : ": ", state.last_refusal().c_str(), resume.c_str());
+  std::fprintf(stderr, "fatmc: %s%s%s%s\n", hooks.failure().c_str(), state.last_refusal().empty() ? "" : ": ",
+               state.last_refusal().c_str(), resume.c_str());
   return Exit::failed;
 }
 
 }  // namespace
 
-std::string default_database(const CampaignSpec& spec) { return "results/" + spec.name + ".db"; }
+std::string default_database(const CampaignSpec& spec, const Shard& shard) {
+  if (shard.count == 1) return "results/" + spec.name + ".db";
+  return "results/" + spec.name + "." + std::to_string(shard.number) + "of" + std::to_string(shard.count) +
+         ".db";
+}
 
 std::string shell_line(const std::vector<std::string>& words) {
   std::string out;
   for (const std::string& word : words) {
     if (!out.empty()) out += ' ';
-    const bool plain = !word.empty() && word.find_first_not_of(
-                                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                            "0123456789-_./:=,+@%") == std::string::npos;
-    if (plain) {
-      out += word;
-      continue;
-    }
-    out += '\'';
-    for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    out += '\'';
+    out += shell_word(word);
   }
   return out;
 }
 
 Exit run_session(const CampaignSpec& spec, const SessionOptions& options) {
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("coordinator"));
+  if (spdlog::get("coordinator") == nullptr)
+    spdlog::set_default_logger(spdlog::stderr_logger_mt("coordinator"));
   spdlog::set_level(options.verbose ? spdlog::level::info : spdlog::level::warn);
   spdlog::cfg::load_env_levels();  // SPDLOG_LEVEL=debug: every message, too
   {

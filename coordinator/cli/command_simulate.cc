@@ -6,6 +6,7 @@
 
 #include "campaigns/base/aircraft_model.h"
 #include "campaigns/base/experiment.h"
+#include "campaigns/base/trial_record.h"
 #include "coordinator/cli/command.h"
 #include "coordinator/cli/output_path.h"
 #include "coordinator/input/record_file.h"
@@ -49,46 +50,6 @@ Result<Flown> fly(const Options& options) {
   return out;
 }
 
-void write_samples(const std::string& path, const Flown& flown) {
-  const FlightRecord& record = flown.record;
-  const Eigen::Index n = record.samples;
-  Eigen::MatrixXd columns(n, 13);
-  for (Eigen::Index i = 0; i < n; ++i)
-    columns(i, 0) = static_cast<double>(i) / flown.experiment.flight.rate_hz;
-  columns.middleCols(1, 3) = record.reference.topRows(n);
-  columns.middleCols(4, 3) = record.input.topRows(n);
-  columns.middleCols(7, 3) = record.output.topRows(n);
-  columns.middleCols(10, 3) = record.auxiliary.topRows(n);
-  write_columns(path,
-                {"t", "r_p", "r_q", "r_r", "xi_c", "eta_c", "zeta_c", "p", "q", "r", "phi", "theta", "V"},
-                columns);
-}
-
-std::string record_toml(const Flown& flown) {
-  const Excitation& excitation = flown.experiment.excitation;
-  const FlightSetup& flight = flown.experiment.flight;
-  std::vector<std::string> lines;
-  for (const int line : excitation.lines) lines.push_back(std::to_string(line));
-  std::string gain;
-  for (int i = 0; i < 3; ++i) {
-    std::vector<std::string> row;
-    for (int j = 0; j < 3; ++j) row.push_back(i == j ? shortest(flight.gain(i)) : "0.0");
-    gain += (i > 0 ? ", [" : "[") + join(row) + "]";
-  }
-  std::string text = "# Rates in rad/s, commands in [-1, 1], angles in rad, V in m/s.\n[record]\n";
-  text += "rate_hz = " + shortest(flight.rate_hz) + "\n";
-  if (flight.closed_loop) text += "reference = [\"r_p\", \"r_q\", \"r_r\"]\n";
-  text += "input = [\"xi_c\", \"eta_c\", \"zeta_c\"]\noutput = [\"p\", \"q\", \"r\"]\n";
-  text += "auxiliary = [\"phi\", \"theta\", \"V\"]\n";
-  text += "period_samples = " + std::to_string(excitation.period_samples) + "\n";
-  text += "periods = " + std::to_string(excitation.periods) + "\n";
-  text += "excited_lines = [" + join(lines) + "]\n";
-  if (flight.closed_loop) text += "controller_gain = [" + gain + "]\n";
-  text += "trim_speed_m_s = " + shortest(flown.model.aircraft.speed_m_s) + "\n";
-  text += "hold = \"zoh\"\n";
-  return text;
-}
-
 // Nothing but an older record is overwritten, and what cannot be written is said before the flight.
 Status check_targets(const std::string& csv_path, const std::string& toml_path) {
   namespace fs = std::filesystem;
@@ -98,7 +59,8 @@ Status check_targets(const std::string& csv_path, const std::string& toml_path) 
   if (fs::exists(toml_path)) {
     const Result<Tree> old = read_toml(toml_path);
     if (!old || old->find("record") == nullptr) {
-      return fail(Error{toml_path, 0, "-o", "exists and is no record's TOML: it would be overwritten, name another CSV"});
+      return fail(Error{toml_path, 0, "-o",
+                        "exists and is no record's TOML: it would be overwritten, name another CSV"});
     }
   }
   return {};
@@ -119,8 +81,9 @@ Exit run(const Options& options) {
                  std::string(name(record.ending)).c_str(), significant(record.ending_time_s, 4).c_str());
     return Exit::failed;
   }
-  write_samples(options.record, *flown);
-  write_file_atomically(toml_path, record_toml(*flown));
+  const TrialRecord columns = trial_record(record, flown->experiment, flown->model.aircraft);
+  write_columns(options.record, columns.names, columns.columns);
+  write_file_atomically(toml_path, columns.toml);
   const auto percent = [](double share) { return significant(100.0 * share, 3) + " %"; };
   std::printf("%s: %s s at %s Hz, %zu lines, trim at %s m/s\n", options.record.c_str(),
               significant(static_cast<double>(record.samples) / flown->experiment.flight.rate_hz, 6).c_str(),

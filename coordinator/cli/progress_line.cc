@@ -45,26 +45,34 @@ std::string clock_text(double seconds) {
   return text;
 }
 
-ProgressLine::ProgressLine(std::uint64_t total)
-    : total_(total),
-      terminal_(::isatty(STDERR_FILENO) == 1),
-      start_(std::chrono::steady_clock::now()),
-      last_(start_) {}
-
-void ProgressLine::show(std::uint64_t done) {
-  const auto now = std::chrono::steady_clock::now();
-  rate_.add(now - start_, done);
-  if (now - last_ < (terminal_ ? kRedraw : kNewLine)) return;
-  last_ = now;
-  draw(done);
+std::string progress_text(const Progress& progress, const RateMeter& rate) {
+  std::string text = std::to_string(progress.done) + "/" + std::to_string(progress.total) + " trials";
+  if (progress.failed > 0) text += ", " + std::to_string(progress.failed) + " not ok";
+  if (progress.paused) {
+    text += ", paused (fatmc resume goes on)";
+  } else {
+    text += ", " + significant(rate.per_second(), 3) + "/s, ETA " +
+            clock_text(rate.seconds_left(progress.total - progress.done));
+  }
+  if (!progress.precision.empty()) text += ", " + progress.precision;
+  return text;
 }
 
-void ProgressLine::draw(std::uint64_t done) {
-  const std::string text = std::to_string(done) + "/" + std::to_string(total_) + " trials, " +
-                           significant(rate_.per_second(), 3) + "/s, ETA " +
-                           clock_text(rate_.seconds_left(total_ - done));
+ProgressLine::ProgressLine()
+    : terminal_(::isatty(STDERR_FILENO) == 1), start_(std::chrono::steady_clock::now()), last_(start_) {}
+
+void ProgressLine::show(const Progress& progress) {
+  const auto now = std::chrono::steady_clock::now();
+  rate_.add(now - start_, progress.done);
+  if (now - last_ < (terminal_ ? kRedraw : kNewLine)) return;
+  last_ = now;
+  draw(progress);
+}
+
+void ProgressLine::draw(const Progress& progress) {
+  const std::string text = progress_text(progress, rate_);
   if (terminal_) {
-    const std::uint64_t filled = total_ > 0 ? kBarWidth * done / total_ : kBarWidth;
+    const std::uint64_t filled = progress.total > 0 ? kBarWidth * progress.done / progress.total : kBarWidth;
     std::fprintf(stderr, "\r[%s%s] %s\033[K", std::string(filled, '#').c_str(),
                  std::string(kBarWidth - filled, '.').c_str(), text.c_str());
     std::fflush(stderr);
@@ -74,9 +82,9 @@ void ProgressLine::draw(std::uint64_t done) {
   }
 }
 
-void ProgressLine::finish(std::uint64_t done) {
+void ProgressLine::finish(const Progress& progress) {
   if (!drawn_) return;
-  draw(done);
+  draw(progress);
   std::fprintf(stderr, "\n");
 }
 

@@ -25,18 +25,28 @@ class RateMeter {
 /// "0:07", "12:30", "3:05:00".
 std::string clock_text(double seconds);
 
+/// What there is to say at a moment.
+struct Progress {
+  std::uint64_t done = 0, total = 0;
+  std::uint64_t failed = 0;  ///< of those done
+  bool paused = false;
+  std::string precision;  ///< of the answer; empty where nothing is watched
+};
+
+/// "128/300 trials, 3 not ok, 147/s, ETA 0:02, share_inside_95 0.951 in [0.93, 0.97]".
+std::string progress_text(const Progress& progress, const RateMeter& rate);
+
 /// Writes to standard error.
 class ProgressLine {
  public:
-  explicit ProgressLine(std::uint64_t total);
-  void show(std::uint64_t done);
+  ProgressLine();
+  void show(const Progress& progress);
   /// Ends the line of the bar.
-  void finish(std::uint64_t done);
+  void finish(const Progress& progress);
 
  private:
-  void draw(std::uint64_t done);
+  void draw(const Progress& progress);
 
-  std::uint64_t total_;
   bool terminal_;
   bool drawn_ = false;
   std::chrono::steady_clock::time_point start_, last_;

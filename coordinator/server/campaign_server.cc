@@ -57,7 +57,7 @@ CampaignServer::CampaignServer(BoundSocket socket, const ServerOptions& options,
       state_(state),
       store_(store),
       parts_(std::make_unique<Parts>(std::move(socket))),
-      commits_(options.commits, [this](std::span<const StoreRequest> batch) { return store_.commit(batch); }),
+      commits_(options.commits, [this](std::span<StoreRequest> batch) { return write(batch); }),
       limits_(options.rates) {
   FATMC_CHECK(parts_->signals >= 0, "out of file descriptors");
 }
@@ -77,11 +77,23 @@ void CampaignServer::send(const WorkerId& worker, const Message& message) {
 
 void CampaignServer::note(const std::string& what) { spdlog::info("{}", what); }
 
+// Rows may have gone out of the plan while they waited.
+std::vector<StoreReport> CampaignServer::write(std::span<StoreRequest> batch) {
+  for (StoreRequest& request : batch) state_.drop_out_of_plan(request);
+  std::vector<StoreReport> reports = store_.commit(batch);
+  committed_.assign(std::make_move_iterator(batch.begin()), std::make_move_iterator(batch.end()));
+  return reports;
+}
+
 void CampaignServer::store(StoreRequest request) { commits_.add(std::move(request), now()); }
 
 void CampaignServer::commit() {
   const bool was_in_trouble = !commits_.trouble().empty();
-  for (const StoreReport& report : commits_.commit(now())) state_.on_stored(report, now(), *this);
+  const std::vector<StoreReport> reports = commits_.commit(now());
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    state_.on_stored(reports[i], now(), *this);
+    if (hooks_ != nullptr && hooks_->on_committed) hooks_->on_committed(committed_[i], reports[i]);
+  }
   const bool is_in_trouble = !commits_.trouble().empty();
   if (is_in_trouble == was_in_trouble) return;
   if (is_in_trouble) {
@@ -92,6 +104,18 @@ void CampaignServer::commit() {
   }
   spdlog::warn("the database takes rows again, work goes on");
   state_.release_dispatch(now(), *this);
+}
+
+void CampaignServer::set_repetitions(std::uint32_t cell, std::uint64_t repetitions) {
+  state_.set_repetitions(cell, repetitions, now(), *this);
+}
+
+void CampaignServer::set_paused(bool paused) {
+  if (paused) {
+    state_.pause();
+  } else {
+    state_.resume(now(), *this);
+  }
 }
 
 void CampaignServer::receive() {
@@ -131,6 +155,7 @@ std::chrono::milliseconds CampaignServer::wait_time() const {
 }
 
 ServerEnd CampaignServer::run(const ServerHooks& hooks) {
+  hooks_ = &hooks;
   std::vector<zmq::pollitem_t> items{{parts_->socket.handle(), 0, ZMQ_POLLIN, 0},
                                      {nullptr, parts_->signals, ZMQ_POLLIN, 0}};
   for (void* handle : parts_->bound.admission_handles()) items.push_back({handle, 0, ZMQ_POLLIN, 0});
@@ -166,6 +191,7 @@ ServerEnd CampaignServer::run(const ServerHooks& hooks) {
     }
   }
   commit();
+  hooks_ = nullptr;
   if (state_.finished()) end = ServerEnd::finished;
   say_bye(end == ServerEnd::finished);
   return end;

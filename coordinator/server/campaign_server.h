@@ -33,6 +33,8 @@ struct ServerOptions {
 /// What happens beside the socket. Each is called on the server's thread and may be empty.
 struct ServerHooks {
   std::function<void()> on_tick;
+  /// After each commit, for every request of it: what came and what became of it.
+  std::function<void(const StoreRequest&, const StoreReport&)> on_committed;
   /// A child of this process has ended (SIGCHLD).
   std::function<void()> on_child;
   /// A reason to give up, or an empty string.
@@ -51,6 +53,9 @@ class CampaignServer : private Outbox {
   /// Serves until all is stored, a signal comes, or a hook reports a failure; then says BYE to all workers.
   /// Throws when the database fails for good (damaged, gone).
   ServerEnd run(const ServerHooks& hooks);
+  /// CampaignState::set_repetitions, pause and resume, from inside a hook.
+  void set_repetitions(std::uint32_t cell, std::uint64_t repetitions);
+  void set_paused(bool paused);
   /// A process of this host has ended; `how` it died, empty when it left in peace.
   void on_process_ended(std::uint32_t pid, const std::string& how);
   /// Messages that could not be read.
@@ -66,6 +71,7 @@ class CampaignServer : private Outbox {
   void note(const std::string& what) override;
   void receive();
   void commit();
+  std::vector<StoreReport> write(std::span<StoreRequest> batch);
   void say_bye(bool finished);
   [[nodiscard]] std::chrono::milliseconds wait_time() const;
 
@@ -73,6 +79,8 @@ class CampaignServer : private Outbox {
   CampaignState& state_;
   CampaignStore& store_;
   std::unique_ptr<Parts> parts_;
+  const ServerHooks* hooks_ = nullptr;   // of run()
+  std::vector<StoreRequest> committed_;  // by the last commit
   GroupCommit commits_;
   PeerLimits limits_;
   std::uint64_t malformed_ = 0;

@@ -20,8 +20,9 @@ struct GroupCommitOptions {
 
 class GroupCommit {
  public:
-  /// One transaction, on disk when it returns; throws StorageTrouble when nothing of it is stored.
-  using Write = std::function<std::vector<StoreReport>(std::span<const StoreRequest>)>;
+  /// One transaction, on disk when it returns; throws StorageTrouble when nothing of it is stored. May take
+  /// the requests with it when it succeeds.
+  using Write = std::function<std::vector<StoreReport>(std::span<StoreRequest>)>;
 
   GroupCommit(const GroupCommitOptions& options, Write write) : options_(options), write_(std::move(write)) {}
 

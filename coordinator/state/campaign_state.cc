@@ -18,11 +18,16 @@ CampaignState::CampaignState(std::vector<PlanCell> plan, Welcome welcome, std::s
   for (PlanCell& cell : plan) {
     CellState state;
     state.repetitions = cell.repetitions;
+    state.priority = cell.priority;
     state.stored = std::move(cell.stored);
     state.stored.erase(cell.repetitions, UINT64_MAX);  // more than the plan asks for
+    state.elsewhere = std::move(cell.elsewhere);
+    state.elsewhere.erase(cell.repetitions, UINT64_MAX);
+    for (const auto& [first, last] : state.elsewhere.ranges()) state.stored.erase(first, last);
     state.pending.insert(0, cell.repetitions);
-    for (const auto& [first, last] : state.stored.ranges()) state.pending.erase(first, last);
-    planned_ += cell.repetitions;
+    for (const IndexRanges* out : {&state.stored, &state.elsewhere})
+      for (const auto& [first, last] : out->ranges()) state.pending.erase(first, last);
+    planned_ += cell.repetitions - state.elsewhere.size();
     stored_ += state.stored.size();
     pending_ += state.pending.size();
     cells_.push_back(std::move(state));
@@ -120,7 +125,8 @@ void CampaignState::on_results(const WorkerId& worker, Results results, Monotoni
   request.rows.reserve(results.rows.size());
   for (ComputedRow& row : results.rows) {
     const TrialKey key = row.row.key;
-    if (key.cell >= cells_.size() || key.repetition >= cells_[key.cell].repetitions) {
+    if (key.cell >= cells_.size() || key.repetition >= cells_[key.cell].repetitions ||
+        cells_[key.cell].elsewhere.contains(key.repetition)) {
       ++counters_.out_of_plan;
       continue;
     }
@@ -179,7 +185,8 @@ void CampaignState::on_stored(const StoreReport& report, MonotonicTime, Outbox& 
       cell.received.erase(key.repetition);
       --received_;
     }
-    if (!cell.stored.contains(key.repetition)) {
+    // A cell may have been cut short between the receipt and the commit.
+    if (key.repetition < cell.repetitions && !cell.stored.contains(key.repetition)) {
       cell.stored.insert(key.repetition);
       ++stored_;
     }

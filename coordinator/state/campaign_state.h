@@ -35,7 +35,20 @@ using MonotonicTime = std::chrono::nanoseconds;  ///< since any fixed moment
 
 struct PlanCell {
   std::uint64_t repetitions = 0;
-  IndexRanges stored;  ///< what the database has already
+  IndexRanges stored = {};     ///< what the database has already
+  IndexRanges elsewhere = {};  ///< what another shard computes: no part of this plan
+  std::int64_t priority = 0;  ///< cells of a higher one go first; equals go in their order
+};
+
+/// A lease that is out, for those who ask where a trial is.
+struct LeaseView {
+  std::uint32_t cell = 0;
+  std::uint64_t first = 0, last = 0;  ///< the span of its trials that have not come back, [first, last)
+  std::uint64_t missing = 0;          ///< how many they are
+  std::uint32_t attempts = 0;         ///< the most that any of them was leased, this lease included
+  std::string host;
+  std::uint32_t pid = 0;
+  MonotonicTime since{};
 };
 
 struct StateOptions {
@@ -113,6 +126,18 @@ class CampaignState {
   /// Time passes: takes back what is overdue. To be called once a heartbeat or more often.
   void on_tick(MonotonicTime now, Outbox& out);
 
+  /// Plans another number of repetitions of a cell. More: they are pending. Fewer: those beyond are planned
+  /// no more, whatever became of them; rows of them that still come are acknowledged and dropped.
+  void set_repetitions(std::uint32_t cell, std::uint64_t repetitions, MonotonicTime now, Outbox& out);
+  [[nodiscard]] std::uint64_t repetitions(std::uint32_t cell) const { return cells_.at(cell).repetitions; }
+  /// Takes rows out that are planned no more since they were received; what is left may be stored.
+  void drop_out_of_plan(StoreRequest& request);
+  /// Nothing is leased while paused; what is out may come back and is stored.
+  void pause() { paused_ = true; }
+  void resume(MonotonicTime now, Outbox& out);
+  [[nodiscard]] bool paused() const { return paused_; }
+  /// Leases that have been out for `age` or longer, oldest first.
+  [[nodiscard]] std::vector<LeaseView> leases(MonotonicTime now, std::chrono::milliseconds age) const;
   /// While the store cannot write, nothing is leased: rows could not be kept.
   void hold_dispatch() { held_ = true; }
   void release_dispatch(MonotonicTime now, Outbox& out);
@@ -132,7 +157,8 @@ class CampaignState {
  private:
   struct CellState {
     std::uint64_t repetitions = 0;
-    IndexRanges pending, received, stored;
+    std::int64_t priority = 0;
+    IndexRanges pending, received, stored, elsewhere;
     std::map<std::uint64_t, std::uint32_t> retries;  ///< of trials that were leased more than once
     double mean_trial_ns = 0.0;
     std::uint64_t timed = 0;
@@ -164,6 +190,7 @@ class CampaignState {
   void measure(CellState& cell, std::uint64_t duration_ns);
   void reclaim(std::uint64_t lease);
   void forget(const WorkerId& worker, const std::string& how, Outbox& out);
+  [[nodiscard]] std::uint32_t next_cell() const;
   void quarantine(TrialKey trial, Outbox& out);
   bool grant(const WorkerId& worker, WorkerState& state, MonotonicTime now, Outbox& out);
   bool grant_copy(const WorkerId& worker, WorkerState& state, MonotonicTime now, Outbox& out);
@@ -186,6 +213,7 @@ class CampaignState {
   std::string build_;
   StateOptions options_;
   std::uint64_t next_lease_;
+  bool paused_ = false;
   Suspects suspects_;
   WorkerId draining_;  ///< a worker that gets nothing until it is free for a trial that must run alone
   bool held_ = false;

@@ -30,15 +30,14 @@ bool CampaignState::holds_a_lease(const WorkerId& worker) const {
 }
 
 bool CampaignState::grant(const WorkerId& worker, WorkerState& state, MonotonicTime now, Outbox& out) {
-  if (held_ || leases_.contains(state.alone)) return false;
-  const auto cell =
-      std::find_if(cells_.begin(), cells_.end(), [](const CellState& c) { return !c.pending.empty(); });
-  if (cell == cells_.end()) return grant_copy(worker, state, now, out);
-  const auto index = static_cast<std::uint32_t>(cell - cells_.begin());
-  if (state.idle == 0 && !is_short(*cell)) return false;
+  if (held_ || paused_ || leases_.contains(state.alone)) return false;
+  const std::uint32_t index = next_cell();
+  if (index == cells_.size()) return grant_copy(worker, state, now, out);
+  CellState& cell = cells_[index];
+  if (state.idle == 0 && !is_short(cell)) return false;
   const std::optional<TrialRange> range = next_range(worker, state, index);
   if (!range) return false;
-  cell->pending.erase(range->first, range->last);
+  cell.pending.erase(range->first, range->last);
   pending_ -= range->last - range->first;
   lease(worker, state, index, *range, now, out);
   return true;

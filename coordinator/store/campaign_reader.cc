@@ -44,6 +44,22 @@ std::vector<double> read_reals(const SQLite::Column& column) {
   return values;
 }
 
+// All but key, metrics and arrays.
+StoredRow read_trial(SQLite::Statement& trial) {
+  StoredRow out;
+  out.computed.row.outcome = trial.getColumn(2).getString();
+  out.computed.row.detail = trial.getColumn(3).getString();
+  const SQLite::Column hash = trial.getColumn(4);
+  if (hash.getBytes() == static_cast<int>(out.computed.hash.size()))
+    std::memcpy(out.computed.hash.data(), hash.getBlob(), out.computed.hash.size());
+  out.host = trial.getColumn(5).getString();
+  out.pid = trial.getColumn(6).getUInt();
+  out.attempts = trial.getColumn(7).getUInt();
+  out.computed.started_us = static_cast<std::uint64_t>(trial.getColumn(8).getInt64());
+  out.computed.duration_ns = static_cast<std::uint64_t>(trial.getColumn(9).getInt64());
+  return out;
+}
+
 }  // namespace
 
 struct CampaignReader::Parts {
@@ -69,6 +85,12 @@ Result<CampaignReader> CampaignReader::open(const std::string& path) {
     auto db = std::make_unique<SQLite::Database>(path, SQLite::OPEN_READONLY, 5000);
     Result<StoredCampaign> campaign = read_campaign(*db, path);
     if (!campaign) return fail(campaign.error());
+    if (campaign->schema < kSchemaVersion) {
+      return fail(Error{path, 0, "",
+                        "has schema " + std::to_string(campaign->schema) + ", older than this program's " +
+                            std::to_string(kSchemaVersion) + "; bring it up to date by: fatmc migrate " +
+                            path});
+    }
     return CampaignReader(std::make_unique<Parts>(Parts{std::move(db), std::move(*campaign)}));
   } catch (const SQLite::Exception& e) {
     if (!is_fault_of_file(e)) throw;
@@ -122,23 +144,32 @@ std::optional<Throughput> CampaignReader::throughput() const {
   return Throughput{trials, static_cast<double>(trials - 1) / span, last.getColumn(2).getString()};
 }
 
-void CampaignReader::visit(std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor) const {
+void CampaignReader::visit(std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor,
+                           RowSelection rows) const {
+  visit_stored(cell, [&](StoredRow& stored) { visitor(stored.computed.row); }, rows);
+}
+
+void CampaignReader::visit_stored(std::uint32_t cell, const std::function<void(StoredRow&)>& visitor,
+                                  RowSelection rows) const {
   SQLite::Database& db = *parts_->db;
   SQLite::Savepoint snapshot(db, "visit");  // several statements, one state of the database; visits may nest
   const auto names = read_names(db);
-  const std::string range = " BETWEEN " + std::to_string(trial_id({cell, 0})) + " AND " +
-                            std::to_string(trial_id({cell + 1, 0}) - 1) + " ORDER BY ";
-  SQLite::Statement trials(db, "SELECT id, repetition, outcome, detail FROM trial WHERE id" + range + "id");
+  const std::string range = " BETWEEN " + std::to_string(trial_id({cell, rows.first})) + " AND " +
+                            std::to_string(trial_id({cell, 0}) + static_cast<std::int64_t>(rows.last) - 1) +
+                            " ORDER BY ";
+  SQLite::Statement trials(db,
+                           "SELECT id, repetition, outcome, detail, content_hash, host, pid, attempts, "
+                           "started_us, duration_ns FROM trial WHERE id" +
+                               range + "id");
   SQLite::Statement metrics(db,
                             "SELECT trial, name, value FROM metric WHERE trial" + range + "trial, position");
   SQLite::Statement arrays(db, "SELECT trial, name, data FROM array WHERE trial" + range + "trial, position");
   bool more_metrics = metrics.executeStep();
-  bool more_arrays = arrays.executeStep();
+  bool more_arrays = rows.arrays && arrays.executeStep();
   while (trials.executeStep()) {
-    TrialRow row;
+    StoredRow stored = read_trial(trials);
+    TrialRow& row = stored.computed.row;
     row.key = {cell, static_cast<std::uint64_t>(trials.getColumn(1).getInt64())};
-    row.outcome = trials.getColumn(2).getString();
-    row.detail = trials.getColumn(3).getString();
     const std::int64_t id = trials.getColumn(0).getInt64();
     consume(metrics, more_metrics, id, [&] {
       row.metrics.emplace_back(names.at(metrics.getColumn(1).getInt64()), read_real(metrics.getColumn(2)));
@@ -146,11 +177,21 @@ void CampaignReader::visit(std::uint32_t cell, const std::function<void(const Tr
     consume(arrays, more_arrays, id, [&] {
       row.arrays.emplace_back(names.at(arrays.getColumn(1).getInt64()), read_reals(arrays.getColumn(2)));
     });
-    visitor(row);
+    visitor(stored);
   }
   for (SQLite::Statement* statement : {&trials, &metrics, &arrays}) statement->reset();
   snapshot.release();
 }
+
+std::optional<StoredRow> CampaignReader::trial(TrialKey key) const {
+  std::optional<StoredRow> out;
+  visit_stored(
+      key.cell, [&](StoredRow& row) { out = std::move(row); },
+      {.first = key.repetition, .last = key.repetition + 1});
+  return out;
+}
+
+ControlTables CampaignReader::control() const { return ControlTables(*parts_->db); }
 
 RowSource CampaignReader::rows() const {
   return [this](std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor) {

@@ -6,14 +6,14 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
 #include <map>
 #include <optional>
 
 #include "coordinator/store/database_error.h"
+#include "coordinator/store/database_file.h"
+#include "coordinator/store/migration.h"
 #include "coordinator/store/schema.h"
-#include "coordinator/store/spec_difference.h"
 #include "coordinator/store/stored_campaign.h"
 #include "coordinator/store/writer_lock.h"
 
@@ -23,117 +23,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "arrays are stored as little-endian doubles");
 
 constexpr int kBusyMs = 5000;
-constexpr std::uint32_t kHeartbeatMs = 500;  // of the stored frame, which nobody is sent
-
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text;
-}
-
-// A file without a table: new, or left by a process that died while making it.
-bool is_blank(const std::string& path) {
-  if (!std::filesystem::exists(path) || std::filesystem::file_size(path) == 0) return true;
-  const SQLite::Database db(path, SQLite::OPEN_READWRITE, kBusyMs);
-  SQLite::Statement tables(db, "SELECT 1 FROM sqlite_master");
-  return !tables.executeStep();
-}
-
-void create(SQLite::Database& db, const CampaignSpec& spec, const std::string& build) {
-  SQLite::Transaction transaction(db);
-  db.exec(kSchemaSql);
-  db.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
-  db.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
-  SQLite::Statement campaign(db, "INSERT INTO campaign VALUES (1, ?, ?, ?, ?, ?, ?, ?, ?)");
-  const std::string frame = encode(Welcome{spec.identity(), spec.tree, kHeartbeatMs});
-  campaign.bind(1, spec.name);
-  campaign.bind(2, spec.study);
-  campaign.bind(3, static_cast<std::int64_t>(spec.seed));
-  campaign.bind(4, spec.identity());
-  campaign.bind(5, build);
-  campaign.bind(6, canonical_text(spec.tree));
-  campaign.bind(7, frame.data(), static_cast<int>(frame.size()));
-  campaign.bind(8, utc_now());
-  campaign.exec();
-  SQLite::Statement cell(db, "INSERT INTO cell VALUES (?, ?, ?)");
-  for (std::size_t i = 0; i < spec.cells.size(); ++i) {
-    cell.bind(1, static_cast<std::int64_t>(i));
-    cell.bind(2, spec.cells[i].name);
-    cell.bind(3, static_cast<std::int64_t>(spec.cells[i].repetitions));
-    cell.exec();
-    cell.reset();
-  }
-  transaction.commit();
-}
-
-Status check_same(const std::string& path, const StoredCampaign& stored, const CampaignSpec& spec,
-                  const std::string& build) {
-  const std::string remedy = "; repeat what it was made with, or name another file by --db";
-  if (stored.spec.seed != spec.seed) {
-    return fail(Error{path, 0, "seed",
-                      "the database was made with seed " + std::to_string(stored.spec.seed) +
-                          ", this run has " + std::to_string(spec.seed) + remedy});
-  }
-  if (stored.identity != spec.identity()) {
-    if (auto difference = first_difference(spec.tree, stored.spec.tree)) {
-      difference->message += " (" + path + ")" + remedy;
-      return fail(*difference);
-    }
-    return fail(Error{path, 0, "", "the database was made with another spec" + remedy});
-  }
-  if (stored.build != build) {
-    return fail(Error{path, 0, "build",
-                      "the database was made by build " + stored.build.substr(0, 12) + ", this program is " +
-                          build.substr(0, 12) +
-                          ", whose numbers may differ; finish it with that build, or name "
-                          "another file by --db"});
-  }
-  return {};
-}
-
-// The figures to compare with are no part of the identity and may be corrected at any time: the run that
-// resumes decides.
-void renew_published(SQLite::Database& db, const StoredCampaign& stored, const CampaignSpec& spec) {
-  Tree tree = stored.spec.tree;
-  std::erase_if(std::get<Tree::Table>(tree.value).entries,
-                [](const auto& entry) { return entry.first == "published"; });
-  if (const Tree* published = spec.tree.find("published")) tree.set("published", *published);
-  if (canonical_text(tree) == canonical_text(stored.spec.tree)) return;
-  const std::string frame = encode(Welcome{stored.identity, tree, kHeartbeatMs});
-  SQLite::Statement campaign(db, "UPDATE campaign SET spec_canonical = ?, spec = ?");
-  campaign.bind(1, canonical_text(tree));
-  campaign.bind(2, frame.data(), static_cast<int>(frame.size()));
-  campaign.exec();
-}
-
-void resume(SQLite::Database& db, const StoredCampaign& stored, const CampaignSpec& spec) {
-  SQLite::Transaction transaction(db);
-  renew_published(db, stored, spec);
-  SQLite::Statement cell(db, "UPDATE cell SET repetitions = max(repetitions, ?) WHERE name = ?");
-  for (const Cell& planned : spec.cells) {
-    cell.bind(1, static_cast<std::int64_t>(planned.repetitions));
-    cell.bind(2, planned.name);
-    cell.exec();
-    cell.reset();
-  }
-  transaction.commit();
-}
-
-Status make_folder(const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  std::error_code error;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  if (error) {
-    return fail(
-        Error{path, 0, "", "its folder cannot be made (" + error.message() + "), name another by --db"});
-  }
-  if (std::filesystem::is_directory(path, error))
-    return fail(Error{path, 0, "", "is a folder, name a file by --db"});
-  return {};
-}
 
 }  // namespace
 
@@ -142,10 +31,9 @@ struct CampaignStore::Parts {
   std::string path;
   SQLite::Database db;
   std::optional<SQLite::Statement> insert_trial, find_hash, remove_trial, insert_metric, insert_array,
-      insert_name;
+      insert_name, find_name;
   std::map<std::string, std::int64_t, std::less<>> names;
-  // The last transaction failed: statements may stand in the middle, and names of it are not stored.
-  bool rolled_back = false;
+  bool in_transaction = false;  ///< of atomically()
 
   Parts(WriterLock held, const std::string& file)
       : lock(std::move(held)),
@@ -155,7 +43,7 @@ struct CampaignStore::Parts {
   // Leaves a single file that may be copied, unless a reader is in it at this moment.
   ~Parts() {
     for (auto* statement :
-         {&insert_trial, &find_hash, &remove_trial, &insert_metric, &insert_array, &insert_name})
+         {&insert_trial, &find_hash, &remove_trial, &insert_metric, &insert_array, &insert_name, &find_name})
       statement->reset();
     db.tryExec("PRAGMA journal_mode = DELETE");
   }
@@ -167,24 +55,36 @@ struct CampaignStore::Parts {
     insert_metric.emplace(db, "INSERT INTO metric VALUES (?, ?, ?, ?)");
     insert_array.emplace(db, "INSERT INTO array VALUES (?, ?, ?, ?)");
     insert_name.emplace(db, "INSERT INTO name (text) VALUES (?)");
-    names.clear();
-    SQLite::Statement all(db, "SELECT id, text FROM name");
-    rolled_back = false;
-    while (all.executeStep()) names.emplace(all.getColumn(1).getString(), all.getColumn(0).getInt64());
+    find_name.emplace(db, "SELECT id FROM name WHERE text = ?");
   }
 
   std::int64_t name_id(const std::string& text) {
     const auto known = names.find(text);
     if (known != names.end()) return known->second;
-    insert_name->bindNoCopy(1, text);
-    insert_name->exec();
-    insert_name->reset();
-    return names.emplace(text, db.getLastInsertRowid()).first->second;
+    find_name->bind(1, text);
+    const bool found = find_name->executeStep();
+    std::int64_t id = found ? find_name->getColumn(0).getInt64() : 0;
+    find_name->reset();
+    if (!found) {
+      insert_name->bind(1, text);
+      insert_name->exec();
+      insert_name->reset();
+      id = db.getLastInsertRowid();
+    }
+    return names.emplace(text, id).first->second;
+  }
+
+  // After a transaction that failed: its names are not in the file, and a statement may stand where it
+  // failed.
+  void forget() {
+    names.clear();
+    for (auto* statement :
+         {&insert_trial, &find_hash, &remove_trial, &insert_metric, &insert_array, &insert_name, &find_name})
+      (*statement)->tryReset();
   }
 
   StoreOutcome insert(const ComputedRow& computed, const StoreRequest& request, std::uint32_t attempts);
   StoreOutcome compare(const ComputedRow& computed);
-  std::vector<StoreReport> commit(std::span<const StoreRequest> requests);
 };
 
 // What there is to say about a row whose trial is stored already; `stored` when it made room for it.
@@ -284,13 +184,20 @@ Result<CampaignStore> CampaignStore::open(WriterLock held, const std::string& pa
       stored = std::move(*found);
     }
     auto parts = std::make_unique<Parts>(std::move(held), path);
+    // EXTRA while the file goes over to WAL, so that the removal of the rollback journal is on disk, too: one that
+    // came back after a power cut would undo the change, and with it all that the WAL holds.
+    parts->db.exec("PRAGMA synchronous = EXTRA");
     parts->db.exec("PRAGMA journal_mode = WAL");
     parts->db.exec("PRAGMA synchronous = FULL");
+    if (stored) fatmc::migrate(parts->db, stored->schema);
+    SQLite::Transaction transaction(parts->db);
     if (stored) {
-      resume(parts->db, *stored, spec);
+      resume_campaign(parts->db, *stored, spec);
     } else {
-      create(parts->db, spec, build);
+      create_campaign(parts->db, spec, build);
     }
+    ControlTables(parts->db).create();
+    transaction.commit();
     parts->prepare();
     return CampaignStore(std::move(parts));
   } catch (const SQLite::Exception& e) {
@@ -299,9 +206,30 @@ Result<CampaignStore> CampaignStore::open(WriterLock held, const std::string& pa
   }
 }
 
+Result<int> CampaignStore::migrate(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path))
+    return fail(Error{path, 0, "", "no such database, name one that `fatmc run` made"});
+  Result<WriterLock> held = lock(path);
+  if (!held) return fail(held.error());
+  try {
+    SQLite::Database db(path, SQLite::OPEN_READWRITE, kBusyMs);
+    const Result<StoredCampaign> found = read_campaign(db, path);
+    if (!found) return fail(found.error());
+    const int from = fatmc::migrate(db, found->schema);
+    ControlTables(db).create();
+    return from;
+  } catch (const SQLite::Exception& e) {
+    if (!is_fault_of_file(e)) throw;
+    return fail(database_error(e, path));
+  }
+}
+
 std::vector<PlanCell> CampaignStore::plan(const CampaignSpec& spec, StoredTrials counted) {
   std::vector<PlanCell> plan;
-  for (const Cell& cell : spec.cells) plan.push_back({cell.repetitions, {}});
+  for (const Cell& cell : spec.cells) {
+    plan.push_back(
+        {.repetitions = cell.repetitions, .stored = {}, .elsewhere = {}, .priority = cell.priority});
+  }
   SQLite::Statement keys(parts_->db,
                          counted == StoredTrials::all
                              ? "SELECT cell, repetition FROM trial ORDER BY id"
@@ -326,30 +254,48 @@ std::vector<PlanCell> CampaignStore::plan(const CampaignSpec& spec, StoredTrials
   return plan;
 }
 
-std::vector<StoreReport> CampaignStore::Parts::commit(std::span<const StoreRequest> requests) {
-  std::vector<StoreReport> reports;
-  SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-  for (const StoreRequest& request : requests) {
-    StoreReport report{request.worker, request.sequence, {}};
-    for (std::size_t i = 0; i < request.rows.size(); ++i) {
-      report.rows.emplace_back(request.rows[i].row.key,
-                               insert(request.rows[i], request, request.attempts[i]));
-    }
-    reports.push_back(std::move(report));
-  }
-  transaction.commit();
-  return reports;
-}
-
 std::vector<StoreReport> CampaignStore::commit(std::span<const StoreRequest> requests) {
+  std::vector<StoreReport> reports;
+  const auto insert_all = [&] {
+    for (const StoreRequest& request : requests) {
+      StoreReport report{request.worker, request.sequence, {}};
+      for (std::size_t i = 0; i < request.rows.size(); ++i) {
+        report.rows.emplace_back(request.rows[i].row.key,
+                                 parts_->insert(request.rows[i], request, request.attempts[i]));
+      }
+      reports.push_back(std::move(report));
+    }
+    return true;
+  };
   try {
-    if (parts_->rolled_back) parts_->prepare();
-    return parts_->commit(requests);
+    if (parts_->in_transaction) {
+      insert_all();
+    } else {
+      atomically(insert_all);
+    }
   } catch (const SQLite::Exception& e) {
-    parts_->rolled_back = true;
     if (!is_passing(e)) throw;
     throw StorageTrouble(e.what());
   }
+  return reports;
+}
+
+ControlTables CampaignStore::control() { return ControlTables(parts_->db); }
+
+void CampaignStore::atomically(const std::function<bool()>& work) {
+  bool done = false;
+  try {
+    SQLite::Transaction transaction(parts_->db, SQLite::TransactionBehavior::IMMEDIATE);
+    parts_->in_transaction = true;
+    done = work();
+    if (done) transaction.commit();
+  } catch (...) {
+    parts_->in_transaction = false;
+    parts_->forget();
+    throw;
+  }
+  parts_->in_transaction = false;
+  if (!done) parts_->forget();
 }
 
 }  // namespace fatmc

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,6 +17,7 @@
 #include "campaigns/base/campaign_spec.h"
 #include "campaigns/base/study.h"
 #include "coordinator/state/campaign_state.h"
+#include "coordinator/store/control_tables.h"
 #include "coordinator/store/storage_trouble.h"
 #include "coordinator/store/writer_lock.h"
 #include "core/base/error.h"
@@ -43,6 +45,9 @@ class CampaignStore {
   static Result<CampaignStore> open(const std::string& path, const CampaignSpec& spec,
                                     const std::string& build);
 
+  /// Brings a file of an older schema up to date, whatever its spec and build; the schema that was found.
+  static Result<int> migrate(const std::string& path);
+
   CampaignStore(CampaignStore&&) noexcept;
   ~CampaignStore();
 
@@ -54,11 +59,24 @@ class CampaignStore {
   /// when its content hash is the same, else `conflict`; but a result takes the place of a row that says
   /// that the trial was given up. Throws StorageTrouble.
   std::vector<StoreReport> commit(std::span<const StoreRequest> requests);
+  /// Calls `work`, in which all commits are one transaction: it becomes durable when `work` returns true, and
+  /// leaves no trace when it returns false or throws.
+  void atomically(const std::function<bool()>& work);
+
+  /// What commands beside the coordinator want, and what it tells them. Not beyond the store's life.
+  [[nodiscard]] ControlTables control();
 
  private:
   struct Parts;
   explicit CampaignStore(std::unique_ptr<Parts> parts);
   std::unique_ptr<Parts> parts_;
+};
+
+/// A row with all that is stored of it.
+struct StoredRow {
+  ComputedRow computed;
+  std::string host;
+  std::uint32_t pid = 0, attempts = 0;
 };
 
 struct OutcomeCount {
@@ -79,9 +97,15 @@ struct Throughput {
   std::string until;  ///< UTC
 };
 
+struct RowSelection {
+  std::uint64_t first = 0, last = std::uint64_t{1} << 40;
+  bool arrays = true;
+};
+
 /// Reads a campaign's rows, also while another process writes them.
 class CampaignReader {
  public:
+  /// An Error, too, for a file of an older schema: CampaignStore::migrate() is the remedy.
   static Result<CampaignReader> open(const std::string& path);
 
   CampaignReader(CampaignReader&&) noexcept;
@@ -97,8 +121,16 @@ class CampaignReader {
   /// Over the trials that ended in the last 60 s before the last one, so that pauses between runs do not
   /// count; none when they are fewer than two.
   [[nodiscard]] std::optional<Throughput> throughput() const;
-  /// Rows of a cell in the order of repetitions.
-  void visit(std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor) const;
+  /// Rows of a cell in the order of repetitions: all of them, or those of [first, last), with or without
+  /// arrays.
+  void visit(std::uint32_t cell, const std::function<void(const TrialRow&)>& visitor,
+             RowSelection rows = {}) const;
+  /// The same with provenance and the stored content hash, which is not compared with the row.
+  void visit_stored(std::uint32_t cell, const std::function<void(StoredRow&)>& visitor,
+                    RowSelection rows = {}) const;
+  /// One row; none where it is not stored.
+  [[nodiscard]] std::optional<StoredRow> trial(TrialKey key) const;
+  [[nodiscard]] ControlTables control() const;
   /// For SummaryStudy; the reader must outlive it.
   [[nodiscard]] RowSource rows() const;
   /// SHA-256 over all results in the order of their keys: the same whoever computed them, and when.

@@ -10,8 +10,8 @@ std::string text_of(const Tree& tree) {
 
 // What CampaignSpec::identity() leaves out, too.
 bool is_ignored(const std::string& path, const std::string& name, int depth) {
-  return (depth == 0 && name == "published") ||
-         (depth == 2 && path.starts_with("cell.") && name == "repetitions");
+  return (depth == 0 && (name == "published" || name == "stop" || name == "watch")) ||
+         (depth == 2 && path.starts_with("cell.") && (name == "repetitions" || name == "priority"));
 }
 
 std::optional<Error> differ(const Tree& now, const Tree& then, const std::string& path, int depth);

@@ -3,7 +3,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include "coordinator/store/database_error.h"
-#include "coordinator/store/schema.h"
+#include "coordinator/store/migration.h"
 #include "proto/wire.h"
 
 namespace fatmc {
@@ -31,20 +31,14 @@ Result<CampaignSpec> decode_spec(SQLite::Database& db, const SQLite::Column& blo
 
 Result<StoredCampaign> read_campaign(SQLite::Database& db, const std::string& path) {
   try {
-    if (db.execAndGet("PRAGMA application_id").getInt() != kApplicationId) {
-      return fail(Error{path, 0, "", "is a database of something else, name one that fatmc made"});
-    }
-    const int version = db.execAndGet("PRAGMA user_version").getInt();
-    if (version != kSchemaVersion) {
-      return fail(Error{path, 0, "",
-                        "has schema " + std::to_string(version) + ", this program reads " +
-                            std::to_string(kSchemaVersion) + "; use the program that made it"});
-    }
+    const Result<int> version = schema_version(db, path);
+    if (!version) return fail(version.error());
     SQLite::Statement row(db, "SELECT spec, identity, build FROM campaign");
     if (!row.executeStep()) return fail(Error{path, 0, "campaign", "is empty, the file is damaged"});
     Result<CampaignSpec> spec = decode_spec(db, row.getColumn(0), path);
     if (!spec) return fail(spec.error());
-    return StoredCampaign{std::move(*spec), row.getColumn(1).getString(), row.getColumn(2).getString()};
+    return StoredCampaign{std::move(*spec), row.getColumn(1).getString(), row.getColumn(2).getString(),
+                          *version};
   } catch (const SQLite::Exception& e) {
     if (!is_fault_of_file(e)) throw;
     return fail(database_error(e, path));

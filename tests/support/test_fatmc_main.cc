@@ -11,6 +11,13 @@ int main(int argc, char** argv) {
   fatmc::cli::add_status_command(app, exit);
   fatmc::cli::add_query_command(app, exit);
   fatmc::cli::add_digest_command(app, exit);
+  fatmc::cli::add_merge_command(app, exit);
+  fatmc::cli::add_migrate_command(app, exit);
   fatmc::cli::add_tables_command(app, exit);
+  fatmc::cli::add_replay_command(app, exit);
+  fatmc::cli::add_pause_command(app, exit);
+  fatmc::cli::add_resume_command(app, exit);
+  fatmc::cli::add_extend_command(app, exit);
+  fatmc::cli::add_explain_command(app, exit);
   return fatmc::cli::run_application(app, exit, argc, argv);
 }

@@ -14,8 +14,14 @@
 //   hold_while = ""
 //   last_while = ""        # the last repetition waits while this file exists
 //   throw_at = -1          # the repetition at which the trial throws
+//
+//   [inputs]               # optional: metrics "linear" = 2 a + b + noise, "ishigami" of a, b and c, "noise"
+//   a = 0.0
+//   b = 0.0
+//   c = 0.0
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -57,6 +63,12 @@ void be_slow(std::chrono::steady_clock::duration taken) {
 class TestCell final : public PreparedCell {
  public:
   TestCell(const CampaignSpec& spec, std::uint32_t cell, Decoder& table) : spec_(spec), cell_(cell) {
+    if (const Tree* inputs = spec.tree.find("inputs")) {
+      respond_ = true;
+      Decoder own(*inputs, "inputs");
+      inputs_ = {own.real("a", {}, 0.0), own.real("b", {}, 0.0), own.real("c", {}, 0.0)};
+      table.take(own.finish());
+    }
     work_ = table.integer("work", {.low = 0, .high = 10'000'000'000}, 0);
     diverge_every_ = table.integer("diverge_every", {.low = 0}, 0);
     array_ = table.integer("array", {.low = 0, .high = 1'000'000}, 0);
@@ -91,6 +103,14 @@ class TestCell final : public PreparedCell {
     // FATMC_TEST_WRONG_AT: a repetition whose result is another than elsewhere.
     if (number == static_cast<std::int64_t>(from_environment("FATMC_TEST_WRONG_AT", -1.0))) x += 1.0;
     row.metrics = {{"x", x}, {"normal", stream.normal()}};
+    if (respond_) {
+      const auto [a, b, c] = inputs_;
+      const double noise = stream.normal();
+      row.metrics.emplace_back("noise", noise);
+      row.metrics.emplace_back("linear", 2.0 * a + b + noise);
+      row.metrics.emplace_back(
+          "ishigami", std::sin(a) + 7.0 * std::sin(b) * std::sin(b) + 0.1 * std::pow(c, 4) * std::sin(a));
+    }
     std::vector<double> values(static_cast<std::size_t>(array_));
     for (double& value : values) value = stream.normal();
     row.arrays = {{"values", std::move(values)}};
@@ -100,6 +120,8 @@ class TestCell final : public PreparedCell {
  private:
   CampaignSpec spec_;
   std::uint32_t cell_;
+  bool respond_ = false;
+  std::array<double, 3> inputs_{};
   std::int64_t work_ = 0, diverge_every_ = 0, array_ = 0, crash_at_ = -1, crash_every_ = 0, hold_at_ = -1,
                throw_at_ = -1;
   std::string crash_if_, hold_while_, last_while_;

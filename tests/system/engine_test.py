@@ -15,13 +15,35 @@ from engine_case import FATMC, LIMIT_S, SPEC, WORKER, EngineCase, children, is_a
 
 
 class Engine(EngineCase):
-    def test_one_and_two_workers_leave_the_same_digest(self):
+    def test_one_two_and_eight_workers_leave_the_same_digest(self):
         reference = self.reference_digest()
-        result = self.call("run", "spec.toml", "--db", "two.db", "--workers", "2")
+        for workers in ("2", "8"):
+            result = self.call("run", "spec.toml", "--db", f"{workers}.db", "--workers", workers)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn("180 of 180 trials: 168 ok, 12 diverged", result.stdout)
+            self.assertIn("mean of a standard normal", result.stdout)
+            self.assertEqual(self.digest(f"{workers}.db"), reference)
+
+    def test_a_campaign_done_piece_by_piece_in_another_order_has_the_same_digest(self):
+        reference = self.reference_digest()
+        for trials, workers in (("7", "3"), ("31", "1"), ("60", "2")):
+            result = self.call("run", "spec.toml", "--db", "p.db", "--trials", trials, "--workers", workers)
+            self.assertEqual(result.returncode, 0, result.stderr)
+        result = self.call("run", "spec.toml", "--db", "p.db", "--workers", "2")
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("180 of 180 trials: 168 ok, 12 diverged", result.stdout)
-        self.assertIn("mean of a standard normal", result.stdout)
-        self.assertEqual(self.digest("two.db"), reference)
+        self.assertEqual(self.digest("p.db"), reference)
+
+    def test_keys_of_a_run_stand_in_no_command_line_and_no_environment(self):
+        process = self.start(FATMC, "run", "spec.toml", "--workers", "1")
+        worker = until(lambda: children(process.pid), "the worker is there")[0]
+        until(lambda: self.stored("results/engine.db") > 0, "it works")
+        for what in ("cmdline", "environ"):
+            with open(f"/proc/{worker}/{what}", "rb") as file:
+                self.assertNotRegex(file.read(), rb"[0-9a-f]{64}")
+        with open(f"/proc/{worker}/cmdline", "rb") as file:
+            self.assertIn(b"--keys-descriptor\x003", file.read())
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=LIMIT_S)
 
     def test_a_worker_then_the_coordinator_killed_and_resumed_leave_the_same_digest(self):
         reference = self.reference_digest()

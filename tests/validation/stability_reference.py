@@ -62,8 +62,8 @@ class Reference:
     def __init__(self, columns, roles, lines, periods, period, rate, k):
         pick = lambda role: np.stack([columns[name] for name in roles[role]], axis=1)
         self.n_e, order, n_transient = 9, 2, 5
-        self.g, variance, self.bias = lpm_reference.fast_lpm(pick("output"), pick("input"), pick("reference"), lines,
-                                                             periods, period, rate, self.n_e, order, n_transient)
+        self.g, variance, self.bias, _ = lpm_reference.fast_lpm(pick("output"), pick("input"), pick("reference"), lines,
+                                                                periods, period, rate, self.n_e, order, n_transient)
         self.sigma = np.sqrt(variance)
         self.q = 2 * self.n_e + 1 - (order + 1) * len(roles["input"])
         self.snr = noise_snr_db(pick("input"), lines, periods, period, order, n_transient)

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "campaigns/base/prepared_trials.h"
 #include "campaigns/coverage/row_arrays.h"
 #include "campaigns/coverage/summary.h"
 #include "coordinator/input/toml_file.h"
@@ -20,8 +21,8 @@ Tree& at(Tree& tree, std::initializer_list<std::string_view> path) {
 
 TEST(CoverageTrial, DependsOnItsRepetitionAlone) {
   const CampaignSpec spec = shipped_spec();
-  const auto first = kTrialStudy.prepare(spec, 0);
-  const auto second = kTrialStudy.prepare(spec, 0);
+  const auto first = prepare_trials(kTrialStudy, spec, 0);
+  const auto second = prepare_trials(kTrialStudy, spec, 0);
   ASSERT_TRUE(first && second);
   const TrialRow before = (*first)->run(3);
   (*second)->run(7);
@@ -31,7 +32,7 @@ TEST(CoverageTrial, DependsOnItsRepetitionAlone) {
 
 TEST(CoverageTrial, HoldsAllLinesAndElements) {
   const CampaignSpec spec = shipped_spec();
-  const TrialRow row = (*kTrialStudy.prepare(spec, 0))->run(0);
+  const TrialRow row = (*prepare_trials(kTrialStudy, spec, 0))->run(0);
   EXPECT_EQ(row.outcome, "ok");
   for (const auto name : {kErrorReal, kErrorImag, kVariance, kBias, kBiasPrinted}) {
     ASSERT_NE(row.array(name), nullptr);
@@ -45,7 +46,7 @@ TEST(CoverageTrial, AFlightThatLeavesTheModelIsAnOutcomeOfItsRow) {
   at(spec.tree, {"experiment", "excitation"})
       .set("amplitude_rad_s",
            Tree{Tree::Array{{Tree{2.0, {}, 0}, Tree{2.0, {}, 0}, Tree{2.0, {}, 0}}}, {}, 0});
-  const auto cell = kTrialStudy.prepare(spec, 0);
+  const auto cell = prepare_trials(kTrialStudy, spec, 0);
   ASSERT_TRUE(cell) << cell.error().text();
   const TrialRow row = (*cell)->run(0);
   EXPECT_EQ(row.outcome, "diverged");
@@ -61,7 +62,7 @@ TEST(CoverageTrial, AFlightThatLeavesTheModelIsAnOutcomeOfItsRow) {
 TEST(CoverageTrial, AnErrorInTheSpecNamesFileLineAndKey) {
   CampaignSpec spec = shipped_spec();
   at(spec.tree, {"estimator", "n_e"}).value = std::int64_t{2};
-  const auto cell = kTrialStudy.prepare(spec, 0);
+  const auto cell = prepare_trials(kTrialStudy, spec, 0);
   ASSERT_FALSE(cell);
   EXPECT_EQ(cell.error().file, "campaigns/coverage/spec.toml");
   EXPECT_GT(cell.error().line, 0);

@@ -62,5 +62,21 @@ TEST(ClockText, IsReadAsAClock) {
   EXPECT_EQ(cli::clock_text(11100.0), "3:05:00");
 }
 
+TEST(ProgressText, SaysHowFarHowFastAndHowPrecise) {
+  cli::RateMeter meter;
+  meter.add(cli::RateMeter::Seconds(0), 0);
+  meter.add(cli::RateMeter::Seconds(2), 100);
+  cli::Progress progress;
+  progress.done = 100;
+  progress.total = 300;
+  EXPECT_EQ(cli::progress_text(progress, meter), "100/300 trials, 50/s, ETA 0:04");
+  progress.failed = 3;
+  progress.precision = "x 0.95 in [0.9, 1]";
+  EXPECT_EQ(cli::progress_text(progress, meter), "100/300 trials, 3 not ok, 50/s, ETA 0:04, x 0.95 in [0.9, 1]");
+  progress.paused = true;
+  progress.precision.clear();
+  EXPECT_EQ(cli::progress_text(progress, meter), "100/300 trials, 3 not ok, paused (fatmc resume goes on)");
+}
+
 }  // namespace
 }  // namespace fatmc
