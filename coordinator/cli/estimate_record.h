@@ -28,6 +28,11 @@ struct EstimatedRecord {
   double speed_factor = 1.0;  ///< by which G has been scaled (3.4)
 };
 
+/// Whether the method could go by harmonics of a period.
+inline bool periodic(const EstimatedRecord& e) {
+  return e.record.periods >= 2 && !e.record.excited_lines.empty();
+}
+
 /// Adds the options, the records apart, to a command that takes records.
 void add_estimate_options(CLI::App& command, EstimateOptions& options);
 
