@@ -146,7 +146,7 @@ void CampaignServer::receive() {
     if (!commits_.trouble().empty() && std::holds_alternative<Results>(*message)) continue;
     spdlog::debug("from {}: {}", id.to_string().substr(0, 8), message_name(*message));
     state_.on_message(id.to_string(), std::move(*message), now(), *this);
-    if (commits_.is_due(now()) || (state_.all_received() && commits_.may_try(now()))) commit();
+    if (commits_.is_full(now()) || (state_.all_received() && commits_.may_try(now()))) commit();
   }
 }
 
