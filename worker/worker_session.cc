@@ -96,6 +96,7 @@ void WorkerSession::handle_refused(const Refused& refused, Time now) {
 
 void WorkerSession::handle_bye(const Bye& bye, Time now) {
   if (leave_after_ || bye.finished) {
+    send(Bye{"the coordinator said so", false});  // it waits for this, and says BYE again without
     end_ = WorkerEnd{0, bye.reason, {}};
     return;
   }

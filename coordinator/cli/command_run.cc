@@ -37,6 +37,17 @@ std::string resume_command(const RunOptions& options, const std::string& databas
   return shell_line(words);
 }
 
+// [stop] looks at trials 0 ... n-1 of a cell, of which a shard has a part.
+Result<Shard> shard_of(const RunOptions& options, const CampaignSpec& spec) {
+  if (options.shard.empty()) return Shard{};
+  const Result<Shard> shard = parse_shard(options.shard);
+  const Tree* stop = spec.tree.find("stop");
+  if (!shard || shard->count == 1 || stop == nullptr) return shard;
+  return fail(Error{stop->file, stop->line, "stop",
+                    "needs all trials of a cell, and --shard " + options.shard +
+                        " has a part of them; leave out one of the two"});
+}
+
 // Workers here, or a launcher for those elsewhere.
 Status use_launcher(const RunOptions& options, const CampaignSpec& spec, SessionOptions& session) {
   if (options.launch.is_local()) {
@@ -56,11 +67,9 @@ Status use_launcher(const RunOptions& options, const CampaignSpec& spec, Session
 Exit run_one(const RunOptions& options, const CampaignSpec& campaign) {
   const CampaignSpec* spec = &campaign;
   SessionOptions session;
-  if (!options.shard.empty()) {
-    const Result<Shard> shard = parse_shard(options.shard);
-    if (!shard) return report(shard.error());
-    session.shard = *shard;
-  }
+  const Result<Shard> shard = shard_of(options, *spec);
+  if (!shard) return report(shard.error());
+  session.shard = *shard;
   const std::string database =
       options.database.empty() ? default_database(*spec, session.shard) : options.database;
   if (options.dry_run)
@@ -89,6 +98,7 @@ Exit run_list(const RunOptions& options, const std::vector<std::string>& paths) 
   for (const std::string& path : paths) {
     Result<CampaignSpec> spec = read_campaign(path, options.changes);
     if (!spec) return report(spec.error());
+    if (const auto shard = shard_of(options, *spec); !shard) return report(shard.error());
     if (!names.insert(spec->name).second) {
       return report(Error{path, 0, "campaign.name",
                           "\"" + spec->name + "\" names two campaigns of " + options.spec +

@@ -5,6 +5,8 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
+#include <optional>
+#include <utility>
 #include <zmq.hpp>
 
 #include "core/base/check.h"
@@ -16,7 +18,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kMalformedTold = 20;  // later ones are counted alone
-constexpr int kMessagesBetweenLooks = 256;    // at signals and clocks, when messages never end
+constexpr int kTicksOfAbsence = 3;
+constexpr const char* kFinished = "the campaign is finished";
+constexpr int kMessagesBetweenLooks = 256;  // at signals and clocks, when messages never end
 
 sigset_t served_signals() {
   sigset_t set;
@@ -33,6 +37,26 @@ int open_signals() {
 }
 
 MonotonicTime now() { return Clock::now().time_since_epoch(); }
+
+struct Letter {
+  WorkerId from;
+  zmq::message_t frame;
+  bool is_whole = false;  // an id and one frame, as all messages of the protocol
+};
+
+// Nothing when none is there.
+std::optional<Letter> next_letter(zmq::socket_t& socket) {
+  zmq::message_t id;
+  if (!socket.recv(id, zmq::recv_flags::dontwait)) return std::nullopt;
+  Letter letter{id.to_string(), {}, false};
+  if (!id.more() || !socket.recv(letter.frame, zmq::recv_flags::dontwait)) return letter;
+  letter.is_whole = !letter.frame.more();
+  for (bool more = letter.frame.more(); more;) {
+    zmq::message_t rest;
+    more = socket.recv(rest, zmq::recv_flags::dontwait) && rest.more();
+  }
+  return letter;
+}
 
 }  // namespace
 
@@ -119,34 +143,24 @@ void CampaignServer::set_paused(bool paused) {
 }
 
 void CampaignServer::receive() {
-  zmq::socket_t& socket = parts_->socket;
   for (int i = 0; i < kMessagesBetweenLooks; ++i) {
-    zmq::message_t id, frame;
-    if (!socket.recv(id, zmq::recv_flags::dontwait)) return;
-    if (!id.more() || !socket.recv(frame, zmq::recv_flags::dontwait)) {
+    const std::optional<Letter> letter = next_letter(parts_->socket);
+    if (!letter) return;
+    if (!letter->is_whole) {
       ++malformed_;
       continue;
     }
-    if (frame.more()) {
-      ++malformed_;
-      for (zmq::message_t rest = std::move(frame); rest.more();) {
-        zmq::message_t next;
-        if (!socket.recv(next, zmq::recv_flags::dontwait)) break;
-        rest = std::move(next);
-      }
-      continue;
-    }
-    if (!limits_.admit(id.to_string(), frame.size(), now())) continue;
-    Result<Message> message = decode(frame.to_string_view());
+    if (!limits_.admit(letter->from, letter->frame.size(), now())) continue;
+    Result<Message> message = decode(letter->frame.to_string_view());
     if (!message) {
       if (malformed_++ < kMalformedTold) spdlog::warn("{}", message.error().text());
       continue;
     }
     // While rows cannot be kept, their workers keep them; memory would not.
     if (!commits_.trouble().empty() && std::holds_alternative<Results>(*message)) continue;
-    spdlog::debug("from {}: {}", id.to_string().substr(0, 8), message_name(*message));
-    state_.on_message(id.to_string(), std::move(*message), now(), *this);
-    if (commits_.is_due(now()) || (state_.all_received() && commits_.may_try(now()))) commit();
+    spdlog::debug("from {}: {}", letter->from.substr(0, 8), message_name(*message));
+    state_.on_message(letter->from, std::move(*message), now(), *this);
+    if (commits_.is_full(now()) || (state_.all_received() && commits_.may_try(now()))) commit();
   }
 }
 
@@ -154,34 +168,42 @@ std::chrono::milliseconds CampaignServer::wait_time() const {
   return commits_.empty() ? options_.tick : std::min(commits_.until_due(now()), options_.tick);
 }
 
-ServerEnd CampaignServer::run(const ServerHooks& hooks) {
-  hooks_ = &hooks;
+CampaignServer::Signals CampaignServer::wait(std::chrono::milliseconds time) {
   std::vector<zmq::pollitem_t> items{{parts_->socket.handle(), 0, ZMQ_POLLIN, 0},
                                      {nullptr, parts_->signals, ZMQ_POLLIN, 0}};
   for (void* handle : parts_->bound.admission_handles()) items.push_back({handle, 0, ZMQ_POLLIN, 0});
+  zmq::poll(items, time);
+  parts_->bound.serve_admission();
+  Signals out;
+  signalfd_siginfo signal{};
+  while (::read(parts_->signals, &signal, sizeof signal) == sizeof signal)
+    (signal.ssi_signo == SIGCHLD ? out.child : out.interrupted) = true;
+  return out;
+}
+
+void CampaignServer::tick(MonotonicTime last) {
+  // A commit on a slow disk, or a process that was stopped: nobody was listened to meanwhile, and what they
+  // said may still be on its way from the kernel.
+  if (now() - last > kTicksOfAbsence * options_.tick) state_.on_absence(now() - last - options_.tick, now());
+  state_.on_tick(now(), *this);
+  limits_.forget_silent(now());
+  if (hooks_->on_tick) hooks_->on_tick();
+}
+
+ServerEnd CampaignServer::run(const ServerHooks& hooks) {
+  hooks_ = &hooks;
   MonotonicTime last_tick = now();
   ServerEnd end = ServerEnd::finished;
   while (!state_.finished()) {
-    zmq::poll(items, wait_time());
-    parts_->bound.serve_admission();
-    signalfd_siginfo signal{};
-    bool interrupted = false;
-    while (::read(parts_->signals, &signal, sizeof signal) == sizeof signal) {
-      if (signal.ssi_signo != SIGCHLD) {
-        interrupted = true;
-      } else if (hooks.on_child) {
-        hooks.on_child();
-      }
-    }
+    const Signals signals = wait(wait_time());
+    if (signals.child && hooks.on_child) hooks.on_child();
     receive();
     if (commits_.is_due(now())) commit();
     if (now() - last_tick >= options_.tick) {
-      last_tick = now();
-      state_.on_tick(last_tick, *this);
-      limits_.forget_silent(last_tick);
-      if (hooks.on_tick) hooks.on_tick();
+      const MonotonicTime last = std::exchange(last_tick, now());
+      tick(last);
     }
-    if (interrupted) {
+    if (signals.interrupted) {
       end = ServerEnd::interrupted;
       break;
     }
@@ -194,12 +216,31 @@ ServerEnd CampaignServer::run(const ServerHooks& hooks) {
   hooks_ = nullptr;
   if (state_.finished()) end = ServerEnd::finished;
   say_bye(end == ServerEnd::finished);
+  if (end == ServerEnd::finished) see_off();
   return end;
 }
 
 void CampaignServer::say_bye(bool finished) {
   for (const WorkerId& worker : state_.workers()) {
-    send(worker, Bye{finished ? "the campaign is finished" : "the coordinator stops", finished});
+    send(worker, Bye{finished ? kFinished : "the coordinator stops", finished});
+  }
+}
+
+// A worker whose connection broke, or that made another since it heard nothing for long, has missed its BYE;
+// it speaks when the new one stands.
+void CampaignServer::see_off() {
+  const MonotonicTime end = now() + options_.farewell;
+  while (!state_.workers().empty() && now() < end) {
+    if (wait(options_.tick).interrupted) return;
+    while (const std::optional<Letter> letter = next_letter(parts_->socket)) {
+      const Result<Message> message = decode(letter->frame.to_string_view());
+      if (!letter->is_whole || !message) continue;
+      if (std::holds_alternative<Bye>(*message)) {
+        state_.on_gone(letter->from, {}, now(), *this);
+      } else {
+        send(letter->from, Bye{kFinished, true});
+      }
+    }
   }
 }
 

@@ -27,6 +27,9 @@ namespace fatmc {
 struct ServerOptions {
   GroupCommitOptions commits;
   std::chrono::milliseconds tick{100};
+  /// How long workers are waited for that do not answer the last BYE: enough for one that takes its connection
+  /// for dead after 2 s and makes another.
+  std::chrono::milliseconds farewell{3000};
   RateLimits rates;
 };
 
@@ -50,7 +53,8 @@ class CampaignServer : private Outbox {
                  CampaignStore& store);
   ~CampaignServer() override;
 
-  /// Serves until all is stored, a signal comes, or a hook reports a failure; then says BYE to all workers.
+  /// Serves until all is stored, a signal comes, or a hook reports a failure; then says BYE to all workers. The
+  /// BYE of a finished campaign is said until each has answered: one that missed it would wait for ever.
   /// Throws when the database fails for good (damaged, gone).
   ServerEnd run(const ServerHooks& hooks);
   /// CampaignState::set_repetitions, pause and resume, from inside a hook.
@@ -72,7 +76,14 @@ class CampaignServer : private Outbox {
   void receive();
   void commit();
   std::vector<StoreReport> write(std::span<StoreRequest> batch);
+  /// What came while the server waited for a message.
+  struct Signals {
+    bool interrupted = false, child = false;
+  };
+  Signals wait(std::chrono::milliseconds time);
+  void tick(MonotonicTime last);
   void say_bye(bool finished);
+  void see_off();
   [[nodiscard]] std::chrono::milliseconds wait_time() const;
 
   ServerOptions options_;

@@ -13,6 +13,9 @@ namespace fatmc {
 
 struct GroupCommitOptions {
   std::size_t rows = kMaxRowsPerMessage;
+  /// What waits in the socket meanwhile joins the batch, up to this: on a disk that is slow to sync, more rows
+  /// share one fsync.
+  std::size_t most_rows = 10 * kMaxRowsPerMessage;
   std::chrono::milliseconds wait{50};
   /// How soon a commit is tried again that failed because the disk was full or broken.
   std::chrono::milliseconds retry{500};
@@ -30,6 +33,8 @@ class GroupCommit {
   [[nodiscard]] bool empty() const { return batch_.empty(); }
   /// Enough rows, or the oldest has waited long enough; in trouble, when it is time to try again.
   [[nodiscard]] bool is_due(MonotonicTime now) const;
+  /// So many rows that no more should join, be there some or not; in trouble as is_due().
+  [[nodiscard]] bool is_full(MonotonicTime now) const { return rows_ >= options_.most_rows && is_due(now); }
   [[nodiscard]] std::chrono::milliseconds until_due(MonotonicTime now) const;
   /// Writes what is there; what became of it, or nothing while the database cannot take it.
   std::vector<StoreReport> commit(MonotonicTime now);

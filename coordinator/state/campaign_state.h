@@ -37,7 +37,7 @@ struct PlanCell {
   std::uint64_t repetitions = 0;
   IndexRanges stored = {};     ///< what the database has already
   IndexRanges elsewhere = {};  ///< what another shard computes: no part of this plan
-  std::int64_t priority = 0;  ///< cells of a higher one go first; equals go in their order
+  std::int64_t priority = 0;   ///< cells of a higher one go first; equals go in their order
 };
 
 /// A lease that is out, for those who ask where a trial is.
@@ -125,6 +125,8 @@ class CampaignState {
   void on_gone(const WorkerId& worker, const std::string& how, MonotonicTime now, Outbox& out);
   /// Time passes: takes back what is overdue. To be called once a heartbeat or more often.
   void on_tick(MonotonicTime now, Outbox& out);
+  /// For so long, until now, the coordinator listened to nobody: that is no silence of the workers.
+  void on_absence(std::chrono::nanoseconds away, MonotonicTime now);
 
   /// Plans another number of repetitions of a cell. More: they are pending. Fewer: those beyond are planned
   /// no more, whatever became of them; rows of them that still come are acknowledged and dropped.

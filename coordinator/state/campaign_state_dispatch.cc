@@ -230,6 +230,11 @@ void CampaignState::on_gone(const WorkerId& worker, const std::string& how, Mono
   serve_waiting(now, out);
 }
 
+void CampaignState::on_absence(std::chrono::nanoseconds away, MonotonicTime now) {
+  for (auto& [id, worker] : workers_) worker.last_heard = std::min(worker.last_heard + away, now);
+  for (auto& [id, lease] : leases_) lease.last_mentioned = std::min(lease.last_mentioned + away, now);
+}
+
 void CampaignState::on_tick(MonotonicTime now, Outbox& out) {
   std::vector<WorkerId> silent;
   for (const auto& [id, worker] : workers_) {

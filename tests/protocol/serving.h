@@ -81,7 +81,9 @@ class Serving : public testing::Test {
     Result<BoundSocket> socket = BoundSocket::bind("tcp://127.0.0.1:*", keys, limits);
     ASSERT_TRUE(socket) << socket.error().text();
     endpoint_ = socket->endpoint();
-    server_ = std::make_unique<CampaignServer>(std::move(*socket), options, *state_, *store_);
+    ServerOptions brief = options;
+    brief.farewell = {};  // hostile peers answer no BYE
+    server_ = std::make_unique<CampaignServer>(std::move(*socket), brief, *state_, *store_);
     end_ = std::async(std::launch::async, [this] { return server_->run({}); });
   }
   void TearDown() override {
@@ -103,6 +105,7 @@ class Serving : public testing::Test {
     worker.send(Results{spec_.identity(), 1, {row(0), row(1)}});
     EXPECT_EQ(worker.expect<Ack>().sequence, 1U);
     EXPECT_TRUE(worker.expect<Bye>().finished);
+    worker.send(Bye{"BYE received", false});
     EXPECT_EQ(end_.get(), ServerEnd::finished);
   }
 

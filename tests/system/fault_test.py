@@ -218,6 +218,23 @@ class Engine(EngineCase):
         self.done(coordinator, reference)
         self.assertEqual(first.wait(timeout=LIMIT_S), 0)
 
+    def test_a_coordinator_that_was_stopped_at_the_end_still_sees_its_workers_off(self):
+        # The worker takes the connection for dead and makes another while the coordinator has its last row unread:
+        # BYE must come through the new one. So it is when the last commit takes seconds on a slow disk.
+        reference = self.held_reference()
+        self.write("last", "")
+        coordinator = self.coordinator(verbose=True)
+        worker = self.worker()
+        until(lambda: self.is_in(worker, "last"), "the worker is in the last trial")
+        until(lambda: self.stored("x.db") == 39, "all others are stored")
+        coordinator.send_signal(signal.SIGSTOP)
+        os.remove(self.path("last"))
+        self.assertIn("no word from", worker.stderr.readline())
+        coordinator.send_signal(signal.SIGCONT)
+        self.done(coordinator, reference)
+        self.assertEqual(worker.wait(timeout=LIMIT_S), 0)
+        self.assertNotIn("is dead", self.log(), "the coordinator was away, not the worker")
+
     def test_damaged_bytes_cost_a_connection_and_no_result(self):
         reference = self.reference_digest()
         coordinator = self.coordinator(spec="spec.toml", verbose=True)

@@ -121,6 +121,8 @@ class Hosts(unittest.TestCase):
         again = self.fatmc("merge", "all.db", shards[1])
         self.assertIn("0 trials added", again.stdout)
         self.refused("--shard", "run", "spec.toml", "--shard", "4/3")
+        (self.folder / "stop.toml").write_text(SPEC + "[stop]\nmetric = 'x'\nhalf_width = 0.1\nbounds = [0.0, 1.0]\n")
+        self.refused("stop: needs all trials of a cell", "run", "stop.toml", "--shard", "1/2")
         self.refused("made with seed", "merge", "all.db", self.other_seed())
 
     def other_seed(self):

@@ -116,10 +116,14 @@ class Cluster:
         self.daemons.pop("slurmctld").wait()
 
     def remember_jobs(self):
-        """Waits until the jobs of now are in slurmctld's state files, which it writes every few seconds."""
-        names = {line.split()[0].encode() for line in self.ask("squeue", "--noheader", "--format=%j").splitlines()}
+        """Waits until the running jobs of now are in slurmctld's state files, which it writes every few seconds."""
+        # A file with the name of a job may be of the time when it was pending; one with this comment is not.
+        marks = {job: f"running {job}" for job in self.jobs("RUNNING")}
+        for job, mark in marks.items():
+            self.ask("scontrol", "update", f"jobid={job}", f"comment={mark}")
         state = self.folder / "state" / "job_state"
-        until(lambda: state.exists() and all(name in state.read_bytes() for name in names), "jobs are saved")
+        until(lambda: state.exists() and all(mark.encode() in state.read_bytes() for mark in marks.values()),
+              "jobs are saved")
 
     def forget_jobs(self):
         """What is left of a controller whose disk is lost."""

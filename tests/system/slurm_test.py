@@ -116,6 +116,7 @@ class Slurm(unittest.TestCase):
         process = self.start(self.words(database))
         self.wait_for(database, 20)
         if not forgets:
+            until(lambda: len(self.cluster.jobs("RUNNING")) == 2, "both pilots run")
             self.cluster.remember_jobs()
         self.cluster.kill_controller()
         if forgets:

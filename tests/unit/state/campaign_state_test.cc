@@ -86,6 +86,20 @@ TEST_F(CampaignStateTest, AnotherProtocolIsRefusedAtHello) {
   EXPECT_EQ(out_.all<Refused>(kOne).at(0).code, Refused::Code::protocol);
 }
 
+TEST_F(CampaignStateTest, WhileTheCoordinatorItselfWasAwayNoWorkerWasSilent) {
+  CampaignState state = make(10);
+  join(state, kOne);
+  join(state, kTwo);
+  now_ += seconds(5);
+  state.on_message(kTwo, Heartbeat{{0, 0, 0}, {}}, now_, out_);
+  state.on_absence(seconds(5) - milliseconds(100), now_);
+  state.on_tick(now_, out_);
+  EXPECT_EQ(state.workers().size(), 2U);
+  now_ += milliseconds(901);  // but from then on: an absence excuses nobody for longer than it took
+  state.on_tick(now_, out_);
+  EXPECT_TRUE(state.workers().empty());
+}
+
 TEST_F(CampaignStateTest, AWorkerWithoutHelloIsAskedForOneAndItsRowsAreNotAcknowledged) {
   CampaignState state = make(10);
   deliver(state, kOne, 1, {0});
