@@ -1,5 +1,8 @@
 # Libraries, all from Debian packages (scripts/packages.txt).
 find_package(Threads REQUIRED)
+if(FATMC_OPENMP)
+  find_package(OpenMP REQUIRED COMPONENTS CXX)
+endif()
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Boost REQUIRED)

@@ -1,8 +1,10 @@
 // fatmc estimate: frequency response matrix of records, with variances and bias, by any of the estimators.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <thread>
 
 #include "coordinator/cli/command.h"
 #include "coordinator/cli/estimate_plots.h"
@@ -91,6 +93,11 @@ void add_estimate_command(CLI::App& app, Exit& exit) {
   command->add_flag(
       "--bias-variants", arguments->bias_variants,
       "lpm: the bias with the printed, the limit's and the actual constants side by side in estimate.json");
+  options.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  command
+      ->add_option("--threads", options.threads,
+                   "lrm: cores for the lines, default all; the result does not depend on it")
+      ->check(CLI::Range(1, 1024));
   command->add_flag("--plots", arguments->plots,
                     "also draw response.svg: magnitude, phase and confidence region of every element");
   command->add_option(

@@ -130,6 +130,9 @@ void print_modes(const IdentifiedRecords& result) {
   }
 }
 
+/// A model that runs away has a figure without meaning.
+std::string percent(double value) { return value < -999.0 ? "< -999" : fixed(value, 1); }
+
 void print_scores(const char* title, const std::vector<ManeuverScore>& maneuvers) {
   for (const ManeuverScore& maneuver : maneuvers) {
     if (!maneuver.failure.empty()) {
@@ -141,7 +144,7 @@ void print_scores(const char* title, const std::vector<ManeuverScore>& maneuvers
     for (const OutputScore& output : maneuver.outputs) {
       const bool identified = output.variance_accounted_for > 0.0;
       std::printf("  %-8s variance accounted for %6s %%  rms %-9s Theil %s  d1 %s%s\n", output.output.c_str(),
-                  fixed(output.variance_accounted_for, 1).c_str(), significant(output.rms, 3).c_str(),
+                  percent(output.variance_accounted_for).c_str(), significant(output.rms, 3).c_str(),
                   output.theil ? fixed(*output.theil, 3).c_str() : "-",
                   output.agreement ? fixed(*output.agreement, 3).c_str() : "-",
                   identified ? "" : "  not identified: no better than its mean");

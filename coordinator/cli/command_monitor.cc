@@ -8,6 +8,8 @@
 #include <optional>
 
 #include "coordinator/cli/command.h"
+#include "coordinator/cli/estimate_record.h"
+#include "coordinator/cli/loop_controller.h"
 #include "coordinator/input/nominal_plant_file.h"
 #include "coordinator/input/record_file.h"
 #include "core/base/text.h"
@@ -29,29 +31,6 @@ struct MonitorArguments {
   std::optional<double> gain;
 };
 
-std::vector<std::string> names_of(const Record& record, const std::vector<int>& columns) {
-  std::vector<std::string> out;
-  for (const int c : columns) out.push_back(record.names[static_cast<std::size_t>(c)]);
-  return out;
-}
-
-Result<Eigen::MatrixXd> controller_of(const MonitorArguments& arguments, const Record& record) {
-  const auto inputs = static_cast<Eigen::Index>(record.input.size());
-  if (!arguments.gain) {
-    if (record.controller_gain) return *record.controller_gain;
-    return fail(Error{
-        arguments.record, 0, "controller_gain",
-        "is missing: give the K of u = K (r - y) in the record's TOML, or --gain for K times the identity"});
-  }
-  if (record.input.size() != record.output.size()) {
-    return fail(Error{"", 0, "--gain",
-                      "is K times the identity, but the record has " + std::to_string(inputs) +
-                          " inputs and " + std::to_string(record.output.size()) +
-                          " outputs: give controller_gain in its TOML"});
-  }
-  return Eigen::MatrixXd(*arguments.gain * Eigen::MatrixXd::Identity(inputs, inputs));
-}
-
 Result<StabilityMonitor> make_monitor(const MonitorArguments& arguments, const Record& record) {
   if (record.reference.size() != record.input.size()) {
     return fail(Error{arguments.record, 0, "reference",
@@ -63,13 +42,13 @@ Result<StabilityMonitor> make_monitor(const MonitorArguments& arguments, const R
       LpmGrid::create({record.excited_lines, record.period_samples, arguments.window_periods, record.rate_hz},
                       arguments.lpm, static_cast<int>(record.input.size()));
   if (!grid) return fail(Error{arguments.record, 0, grid.error().key, grid.error().message});
-  const Result<Eigen::MatrixXd> controller = controller_of(arguments, record);
+  const Result<Eigen::MatrixXd> controller = loop_controller(record, arguments.gain, arguments.record);
   if (!controller) return fail(controller.error());
   std::vector<double> frequency_hz;
   for (int k = 0; k < grid->line_count(); ++k) frequency_hz.push_back(grid->frequency_hz(k));
-  const Result<NominalPlant> nominal =
-      read_nominal_plant(arguments.nominal, {names_of(record, record.input), names_of(record, record.output),
-                                             record.rate_hz, record.hold, *controller, frequency_hz});
+  const Result<NominalPlant> nominal = read_nominal_plant(
+      arguments.nominal, {channel_names(record, record.input), channel_names(record, record.output),
+                          record.rate_hz, record.hold, *controller, frequency_hz});
   if (!nominal) return fail(nominal.error());
   return StabilityMonitor(*grid, static_cast<int>(record.output.size()), nominal->loop, arguments.options);
 }

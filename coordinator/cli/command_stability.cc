@@ -10,6 +10,7 @@
 
 #include "coordinator/cli/command.h"
 #include "coordinator/cli/estimate_record.h"
+#include "coordinator/cli/loop_controller.h"
 #include "coordinator/cli/output_path.h"
 #include "coordinator/input/nominal_plant_file.h"
 #include "core/base/text.h"
@@ -37,50 +38,37 @@ struct JudgedRecord {
   EstimateStability stability;
 };
 
-/// K of u = K (r − y), from --gain or from the record's TOML.
-Result<Eigen::MatrixXd> controller_of(const StabilityArguments& arguments, const Record& record) {
-  if (!arguments.gain) {
-    if (record.controller_gain) return *record.controller_gain;
-    return fail(Error{arguments.estimate.records.front(), 0, "controller_gain",
-                      "is missing: give the K of u = K (r - y) in the record's TOML, or --gain for K times the identity"});
-  }
-  const auto inputs = static_cast<Eigen::Index>(record.input.size());
-  if (record.input.size() != record.output.size()) {
-    return fail(Error{"", 0, "--gain", "is K times the identity, but the record has " + std::to_string(inputs) +
-                                           " inputs and " + std::to_string(record.output.size()) +
-                                           " outputs: give controller_gain in its TOML"});
-  }
-  return Eigen::MatrixXd(*arguments.gain * Eigen::MatrixXd::Identity(inputs, inputs));
-}
-
 Result<JudgedRecord> judge(const StabilityArguments& arguments) {
   if (!std::isfinite(arguments.options.intergrid) || arguments.options.intergrid < 0.0) {
     return fail(Error{"", 0, "--intergrid", "is a share of the magnitude, 0 or more, for instance 0.03"});
   }
-  if (arguments.gain && !std::isfinite(*arguments.gain)) return fail(Error{"", 0, "--gain", "is a finite number"});
   Result<EstimatedRecord> estimated = estimate_records(arguments.estimate, EstimationMethod::lpm);
   if (!estimated) return fail(estimated.error());
   const Record& record = estimated->record;
-  const Result<Eigen::MatrixXd> controller = controller_of(arguments, record);
+  const Result<Eigen::MatrixXd> controller =
+      loop_controller(record, arguments.gain, arguments.estimate.records.front());
   if (!controller) return fail(controller.error());
   Result<NominalPlant> nominal = read_nominal_plant(
-      arguments.nominal, {channel_names(record, record.input), channel_names(record, record.output), record.rate_hz, record.hold,
-                          *controller, estimated->response.frm.frequency_hz});
+      arguments.nominal, {channel_names(record, record.input), channel_names(record, record.output),
+                          record.rate_hz, record.hold, *controller, estimated->response.frm.frequency_hz});
   if (!nominal) return fail(nominal.error());
-  EstimateStability stability = judge_estimate(estimated->response.frm, estimated->response.bias, nominal->loop, arguments.options);
+  EstimateStability stability =
+      judge_estimate(estimated->response.frm, estimated->response.bias, nominal->loop, arguments.options);
   return JudgedRecord{std::move(*estimated), std::move(*nominal), std::move(stability)};
 }
 
 std::string lines_csv(const JudgedRecord& judged) {
   const FrmEstimate& frm = judged.estimated.response.frm;
   std::string text =
-      "line,frequency_hz,hinf_nominal,ssv_nominal,hinf,ssv_upper,ssv_lower,kappa_hinf,kappa_ssv,p_hinf,p_ssv,snr_min_db\n";
+      "line,frequency_hz,hinf_nominal,ssv_nominal,hinf,ssv_upper,ssv_lower,kappa_hinf,kappa_ssv,p_hinf,p_ssv,"
+      "snr_min_db\n";
   for (std::size_t k = 0; k < judged.stability.lines.size(); ++k) {
     const LineStability& line = judged.stability.lines[k];
     text += std::to_string(frm.lines[k]);
     for (const double value :
-         {frm.frequency_hz[k], line.h_infinity_nominal, line.ssv_nominal, line.h_infinity, line.ssv.upper, line.ssv.lower,
-          line.kappa_h_infinity, line.kappa_ssv, line.p_h_infinity, line.p_ssv, judged.stability.snr_min_db[k]}) {
+         {frm.frequency_hz[k], line.h_infinity_nominal, line.ssv_nominal, line.h_infinity, line.ssv.upper,
+          line.ssv.lower, line.kappa_h_infinity, line.kappa_ssv, line.p_h_infinity, line.p_ssv,
+          judged.stability.snr_min_db[k]}) {
       text += "," + shortest(value);
     }
     text += "\n";
@@ -96,7 +84,9 @@ int certified_lines(const JudgedRecord& judged) {
 std::string summary_json(const StabilityArguments& arguments, const JudgedRecord& judged) {
   const BandStability& band = judged.stability.band;
   const FrmEstimate& frm = judged.estimated.response.frm;
-  const auto optional = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
+  const auto optional = [](const std::optional<double>& value) {
+    return value ? Json(*value) : Json(nullptr);
+  };
   Json json;
   json["nominal_stable"] = band.nominally_stable_ssv;
   json["p_band_hinf"] = band.p_h_infinity;
@@ -114,7 +104,8 @@ std::string summary_json(const StabilityArguments& arguments, const JudgedRecord
   json["lines"] = frm.line_count();
   json["q"] = frm.q;
   const auto cover = intergrid_cover(frm.frequency_hz, arguments.options.intergrid);
-  json["intergrid_covered_damping"] = cover && std::isfinite(cover->damping) ? Json(cover->damping) : Json(nullptr);
+  json["intergrid_covered_damping"] =
+      cover && std::isfinite(cover->damping) ? Json(cover->damping) : Json(nullptr);
   json["nominal"] = {{"kind", judged.nominal.kind},
                      {"moved_poles", judged.nominal.moved_poles},
                      {"largest_pole", optional(judged.nominal.largest_pole)},
@@ -131,19 +122,23 @@ void print_nominal(const StabilityArguments& arguments, const NominalPlant& nomi
   std::printf("stable, largest |z| %s, with K %s", fixed(*nominal.largest_pole, 7).c_str(),
               fixed(*nominal.largest_closed_loop_pole, 7).c_str());
   if (nominal.moved_poles > 0) {
-    std::printf("; %d %s moved onto the circle 1 - 1e-8", nominal.moved_poles, nominal.moved_poles == 1 ? "pole" : "poles");
+    std::printf("; %d %s moved onto the circle 1 - 1e-8", nominal.moved_poles,
+                nominal.moved_poles == 1 ? "pole" : "poles");
   }
   std::printf("\n");
 }
 
 /// "0.523 at 0.325 Hz" of the line where `value` is largest.
-std::string worst(const JudgedRecord& judged, const std::function<double(const LineStability&)>& value, double sign = 1.0) {
+std::string worst(const JudgedRecord& judged, const std::function<double(const LineStability&)>& value,
+                  double sign = 1.0) {
   const auto& lines = judged.stability.lines;
-  const auto at = std::max_element(lines.begin(), lines.end(), [&](const LineStability& a, const LineStability& b) {
-    return sign * value(a) < sign * value(b);
-  });
+  const auto at = std::max_element(
+      lines.begin(), lines.end(),
+      [&](const LineStability& a, const LineStability& b) { return sign * value(a) < sign * value(b); });
   return significant(value(*at), 5) + " at " +
-         significant(judged.estimated.response.frm.frequency_hz[static_cast<std::size_t>(at - lines.begin())], 4) + " Hz";
+         significant(judged.estimated.response.frm.frequency_hz[static_cast<std::size_t>(at - lines.begin())],
+                     4) +
+         " Hz";
 }
 
 void print_row(const char* what, const std::string& h_infinity, const std::string& ssv) {
@@ -153,35 +148,43 @@ void print_row(const char* what, const std::string& h_infinity, const std::strin
 void print_gates(const StabilityArguments& arguments, const JudgedRecord& judged) {
   const EstimateStability& s = judged.stability;
   const std::vector<double>& f = judged.estimated.response.frm.frequency_hz;
-  const auto above = [&s](auto value) { return std::count_if(s.lines.begin(), s.lines.end(), [&](const auto& line) {
-    return !(value(line) < 1.0);
-  }); };
+  const auto above = [&s](auto value) {
+    return std::count_if(s.lines.begin(), s.lines.end(),
+                         [&](const auto& line) { return !(value(line) < 1.0); });
+  };
   const auto nominal_h = above([](const LineStability& l) { return l.h_infinity_nominal; });
   const auto nominal_ssv = above([](const LineStability& l) { return l.ssv_nominal; });
-  std::printf("gates: nominal value not below 1 on %td lines (H-infinity), %td (ssv): %s\n", nominal_h, nominal_ssv,
+  std::printf("gates: nominal value not below 1 on %td lines (H-infinity), %td (ssv): %s\n", nominal_h,
+              nominal_ssv,
               s.band.nominally_stable_ssv ? "nominally stable" : "not shown to be nominally stable");
   const auto lowest = std::min_element(s.snr_min_db.begin(), s.snr_min_db.end());
-  std::printf("       smallest input SNR %s dB at %s Hz, below %s dB on %d lines\n", fixed(*lowest, 1).c_str(),
+  std::printf("       smallest input SNR %s dB at %s Hz, below %s dB on %d lines\n",
+              fixed(*lowest, 1).c_str(),
               significant(f[static_cast<std::size_t>(lowest - s.snr_min_db.begin())], 4).c_str(),
               shortest(arguments.options.minimum_snr_db).c_str(), s.band.low_snr_lines);
   for (std::size_t k = 0; k < s.lines.size(); ++k) {
     if (s.lines[k].status == JudgementStatus::ok) continue;
-    std::printf("       %d lines could not be judged and count as p = 0; the first at %s Hz: %s\n", s.band.failed_lines,
-                significant(f[k], 4).c_str(), judgement_text(s.lines[k].status).c_str());
+    std::printf("       %d lines could not be judged and count as p = 0; the first at %s Hz: %s\n",
+                s.band.failed_lines, significant(f[k], 4).c_str(), judgement_text(s.lines[k].status).c_str());
     break;
   }
-  const auto hopeless = std::count_if(s.lines.begin(), s.lines.end(), [](const LineStability& l) { return l.p_ssv == 0.0; });
+  const auto hopeless =
+      std::count_if(s.lines.begin(), s.lines.end(), [](const LineStability& l) { return l.p_ssv == 0.0; });
   if (hopeless > 0) {
-    std::printf("       p(ssv) is zero on %td %s: bias and intergrid error alone break the criterion there, whatever the "
-                "noise (--bias off leaves the bias out)\n",
-                hopeless, hopeless == 1 ? "line" : "lines");
+    std::printf(
+        "       p(ssv) is zero on %td %s: bias and intergrid error alone break the criterion there, whatever "
+        "the "
+        "noise (--bias off leaves the bias out)\n",
+        hopeless, hopeless == 1 ? "line" : "lines");
   }
   const auto cover = intergrid_cover(f, arguments.options.intergrid);
   if (arguments.options.intergrid > 0.0 && cover) {
-    std::printf("       intergrid error %s %%: resonances between lines are covered from a damping of %s on (gap of %s Hz at "
-                "%s Hz)\n",
-                significant(100.0 * arguments.options.intergrid, 3).c_str(), significant(cover->damping, 2).c_str(),
-                significant(cover->spacing_hz, 3).c_str(), significant(cover->frequency_hz, 3).c_str());
+    std::printf(
+        "       intergrid error %s %%: resonances between lines are covered from a damping of %s on (gap of "
+        "%s Hz at "
+        "%s Hz)\n",
+        significant(100.0 * arguments.options.intergrid, 3).c_str(), significant(cover->damping, 2).c_str(),
+        significant(cover->spacing_hz, 3).c_str(), significant(cover->frequency_hz, 3).c_str());
   }
 }
 
@@ -194,16 +197,20 @@ void print_summary(const StabilityArguments& arguments, const JudgedRecord& judg
             worst(judged, [](const LineStability& l) { return l.ssv_nominal; }));
   print_row("robust, largest", worst(judged, [](const LineStability& l) { return l.h_infinity; }),
             worst(judged, [](const LineStability& l) { return l.ssv.upper; }));
-  print_row("p of a line, smallest", worst(judged, [](const LineStability& l) { return l.p_h_infinity; }, -1.0),
-            worst(judged, [](const LineStability& l) { return l.p_ssv; }, -1.0));
+  print_row("p of a line, smallest",
+            worst(
+                judged, [](const LineStability& l) { return l.p_h_infinity; }, -1.0),
+            worst(
+                judged, [](const LineStability& l) { return l.p_ssv; }, -1.0));
   print_row("p over the band", significant(band.p_h_infinity, 5), significant(band.p_ssv, 5));
   print_row("p over the band, gated (total)", significant(band.p_total_h_infinity, 5),
             significant(band.p_total_ssv, 5));
   print_gates(arguments, judged);
   std::printf("ssv: upper and lower bound agree to 1e-8 on %d of %zu lines\n", certified_lines(judged),
               judged.stability.lines.size());
-  std::printf("elements combined by %s, bias %s\nwritten: %s/lines.csv, %s/summary.json\n", arguments.combine.c_str(),
-              arguments.bias.c_str(), arguments.directory.c_str(), arguments.directory.c_str());
+  std::printf("elements combined by %s, bias %s\nwritten: %s/lines.csv, %s/summary.json\n",
+              arguments.combine.c_str(), arguments.bias.c_str(), arguments.directory.c_str(),
+              arguments.directory.c_str());
 }
 
 Exit run_stability(StabilityArguments& arguments) {
@@ -225,15 +232,20 @@ Exit run_stability(StabilityArguments& arguments) {
 void add_stability_command(CLI::App& app, Exit& exit) {
   auto arguments = std::make_shared<StabilityArguments>();
   CLI::App* command = app.add_subcommand(
-      "stability", "Confidence that the loop of a record is stable: H-infinity and structured singular value a line.");
-  command->add_option("record", arguments->estimate.records, "RECORD.csv or RECORD.mat, its RECORD.toml beside it")->required();
+      "stability",
+      "Confidence that the loop of a record is stable: H-infinity and structured singular value a line.");
+  command
+      ->add_option("record", arguments->estimate.records,
+                   "RECORD.csv or RECORD.mat, its RECORD.toml beside it")
+      ->required();
   command
       ->add_option("--nominal", arguments->nominal,
                    "MODEL known to be stable: TOML of kind aircraft, state_space or frf, or an frm.csv")
       ->required();
   command
       ->add_option("--combine", arguments->combine,
-                   "over the elements of a line: min, the least p (2.271), or bonferroni, a bound on their joint probability")
+                   "over the elements of a line: min, the least p (2.271), or bonferroni, a bound on their "
+                   "joint probability")
       ->check(CLI::IsMember({"min", "bonferroni"}))
       ->capture_default_str();
   command->add_option("--bias", arguments->bias, "count the interpolation bias: on or off")
@@ -243,10 +255,12 @@ void add_stability_command(CLI::App& app, Exit& exit) {
       ->add_option("--intergrid", arguments->options.intergrid,
                    "allowance for what lies between the lines, as a share of each element's magnitude")
       ->capture_default_str();
-  command->add_option("--gain", arguments->gain,
-                      "K is this times the identity in u = K (r - y); absent: controller_gain of the record's TOML");
+  command->add_option(
+      "--gain", arguments->gain,
+      "K is this times the identity in u = K (r - y); absent: controller_gain of the record's TOML");
   add_estimate_options(*command, arguments->estimate);
-  command->add_option("-o,--output", arguments->directory, "directory for lines.csv and summary.json")->required();
+  command->add_option("-o,--output", arguments->directory, "directory for lines.csv and summary.json")
+      ->required();
   command->footer(
       "Example: fatmc stability flight.csv --nominal campaigns/models/fat.toml -o results/stability\n"
       "docs/stability.md describes the method, the files and the keys of MODEL.");

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "coordinator/cli/estimate_record.h"
 #include "coordinator/input/record_file.h"
 #include "core/accuracy/series_accuracy.h"
 #include "core/base/text.h"
@@ -18,12 +19,6 @@ struct NamedManeuver {
   Maneuver maneuver;
 };
 
-std::vector<std::string> names_of(const Record& record, const std::vector<int>& columns) {
-  std::vector<std::string> out;
-  for (const int column : columns) out.push_back(record.names[static_cast<std::size_t>(column)]);
-  return out;
-}
-
 /// Channels and rate of the first record; all others have to agree with it.
 struct Channels {
   std::vector<std::string> inputs, outputs;
@@ -34,7 +29,8 @@ Result<NamedManeuver> read_maneuver(const std::string& file, const IdentifyArgum
                                     Channels& channels) {
   Result<Record> record = read_record(file, arguments.meta);
   if (!record) return fail(record.error());
-  const Channels own{names_of(*record, record->input), names_of(*record, record->output), record->rate_hz};
+  const Channels own{channel_names(*record, record->input), channel_names(*record, record->output),
+                     record->rate_hz};
   if (channels.inputs.empty()) channels = own;
   if (own.inputs != channels.inputs || own.outputs != channels.outputs) {
     return fail(Error{file, 0, "record",

@@ -33,6 +33,14 @@ Result<BinBand> bin_band(const Measurement& m, int width) {
   return band;
 }
 
+void drop_rounding(Eigen::Ref<Eigen::MatrixXcd> known) {
+  constexpr double kRounding = 1e-8;
+  for (Eigen::Index j = 0; j < known.cols(); ++j) {
+    const double floor = kRounding * known.col(j).cwiseAbs().maxCoeff();
+    known.col(j) = (known.col(j).array().abs() > floor).select(known.col(j), 0.0);
+  }
+}
+
 void begin_estimate(const Measurement& m, const BinBand& band, int width, FrmEstimate& e) {
   e.n_out = m.n_out();
   e.n_in = m.n_in();

@@ -28,6 +28,10 @@ Result<BinBand> bin_band(const Measurement& m, int width);
 /// The bins of `band`, of a DFT over `samples`, that lie between the measurement's low_hz and high_hz.
 BinBand within_limits(const BinBand& band, const Measurement& m, int samples);
 
+/// Zero in place of what lies 160 dB below a column's largest bin: rounding of the DFT or of the file, not an excitation.
+/// Regressors are scaled to length 1, so that rounding alone would pass for a signal; zeros make such a line singular.
+void drop_rounding(Eigen::Ref<Eigen::MatrixXcd> known);
+
 /// An estimate's head for every bin of the band: lines, frequencies, sizes, border lines.
 void begin_estimate(const Measurement& m, const BinBand& band, int width, FrmEstimate& estimate);
 

@@ -102,7 +102,10 @@ Result<ResponseEstimate> estimate_response(EstimationMethod method, std::span<co
     case EstimationMethod::robust:
       return line_averages(LineAverage::transient, measurements, options, options.n_transient.value_or(5));
     case EstimationMethod::lrm:
-      return local_rational(first, {n_e, options.order, options.n_transient.value_or(5)});
+      return local_rational(first, {.n_e = n_e,
+                                    .order = options.order,
+                                    .n_transient = options.n_transient.value_or(5),
+                                    .threads = options.threads});
     case EstimationMethod::arbitrary:
       return measurements.size() > 1 ? joint_records(measurements, {n_e, options.order})
                                      : arbitrary_lpm(first, {n_e, options.order});

@@ -38,6 +38,7 @@ struct EstimatorOptions {
   int order = 2;                   ///< odd orders gain nothing in a symmetric window, 4 needs twice the lines
   std::optional<int> n_transient;  ///< without: 5, or for tlpm with 5 periods and more as many as give q = P - 1
   WelchOptions welch;
+  int threads = 1;  ///< for lrm, whose lines are costly; the result does not depend on it
 
   /// What a method takes for options that are left open.
   [[nodiscard]] int n_e_of(EstimationMethod method) const;

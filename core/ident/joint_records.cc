@@ -38,6 +38,7 @@ StackedSpectra stack_spectra(std::span<const Measurement> measurements, const Bi
     }
   }
   if (!m.indirect()) out.known = out.inputs;
+  drop_rounding(out.known);
   return out;
 }
 
@@ -76,7 +77,6 @@ class JointRegression {
         width_(2 * options.n_e + 1),
         n_(static_cast<int>(spectra.known.cols())),
         q_(width_ * (records - n_)),
-        regressor_(width_ * records, (options.order + 1) * n_),
         limit_(f_quantile(kMisfitLevel, 2.0 * n_ * (width_ - 1 - options.order), 2.0 * q_)) {
     for (int b = 0; b < band.count(); ++b) {
       bins_.push_back(regress_line(spectra.known.middleRows(b * records, records),
@@ -95,9 +95,10 @@ class JointRegression {
   }
 
   /// The smoothed regression, or that of the bin alone where smoothing shows; `noise` is its covariance.
-  LineRegression line(int bin, const Eigen::MatrixXcd& noise, bool& alone) {
+  LineRegression line(int bin, const Eigen::MatrixXcd& noise, bool& alone) const {
+    if (const LineRegression* silent = first_singular(bin)) return *silent;
     LineRegression out = smoothed(bin);
-    const double q_smooth = static_cast<double>(regressor_.rows() - regressor_.cols());
+    const double q_smooth = width_ * records_ - (order_ + 1) * n_;
     alone = !(out.condition < kSingularCondition);
     for (Eigen::Index i = 0; i < noise.rows() && !alone; ++i) {
       const double extra = q_smooth * out.C_Z(i, i).real() - q_ * noise(i, i).real();
@@ -109,23 +110,33 @@ class JointRegression {
   }
 
  private:
-  LineRegression smoothed(int bin) {
+  /// A bin of the window that the records do not determine: its residuals are missing in the noise.
+  [[nodiscard]] const LineRegression* first_singular(int bin) const {
+    const int first = band_.window(bin, width_) - band_.first;
+    for (int w = 0; w < width_; ++w) {
+      const LineRegression& at = bins_[static_cast<std::size_t>(first + w)];
+      if (!(at.condition < kSingularCondition)) return &at;
+    }
+    return nullptr;
+  }
+
+  [[nodiscard]] LineRegression smoothed(int bin) const {
     const int first = band_.window(bin, width_), largest = std::max(bin - first, first + width_ - 1 - bin);
     const Eigen::Index from = static_cast<Eigen::Index>(first - band_.first) * records_;
-    for (Eigen::Index row = 0; row < regressor_.rows(); ++row) {
+    Eigen::MatrixXcd regressor(width_ * records_, (order_ + 1) * n_);
+    for (Eigen::Index row = 0; row < regressor.rows(); ++row) {
       const double d = static_cast<double>(first + static_cast<int>(row) / records_ - bin) / largest;
       double power = 1.0;
       for (int s = 0; s <= order_; ++s, power *= d) {  // constant terms last
-        regressor_.row(row).segment((order_ - s) * n_, n_) = power * spectra_.known.row(from + row);
+        regressor.row(row).segment((order_ - s) * n_, n_) = power * spectra_.known.row(from + row);
       }
     }
-    return regress_line(regressor_, spectra_.channels.middleRows(from, regressor_.rows()), n_);
+    return regress_line(regressor, spectra_.channels.middleRows(from, regressor.rows()), n_);
   }
 
   const StackedSpectra& spectra_;
   BinBand band_;
   int records_, order_, width_, n_, q_;
-  Eigen::MatrixXcd regressor_;
   double limit_;
   std::vector<LineRegression> bins_;
 };
@@ -143,12 +154,12 @@ Result<ResponseEstimate> joint_records(std::span<const Measurement> measurements
   FrmEstimate& e = out.frm;
   begin_estimate(m, *band, width, e);
   const StackedSpectra spectra = stack_spectra(measurements, *band);
-  JointRegression regression(spectra, *band, records, options);
+  const JointRegression regression(spectra, *band, records, options);
   e.q = e.q_noise = regression.q();
   for (int k = 0; k < e.line_count(); ++k) {
     const int bin = e.lines[static_cast<std::size_t>(k)];
-    bool alone = false;
     const Eigen::MatrixXcd noise = regression.noise(bin);
+    bool alone = false;
     const LineRegression line = regression.line(bin, noise, alone);
     if (alone) out.fallback.push_back(bin);
     const int row = (bin - band->first) * records;

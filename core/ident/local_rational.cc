@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/ident/aperiodic_windows.h"
+#include "core/ident/line_loop.h"
 #include "core/ident/line_regression.h"
 #include "core/ident/mean_spectra.h"
 
@@ -17,11 +18,14 @@ namespace {
 
 using Matrix = Eigen::MatrixXcd;
 
+/// Of |L^+ L - 1| in the rows of b_0, between rounding and the 1/2 of two references alike.
+constexpr double kUndetermined = 1e-3;
+
 /// One line's window: everything the fits need.
 struct Window {
-  Eigen::VectorXd x;    ///< offsets, largest magnitude 1
-  Matrix known;         ///< width x n_in
-  Matrix channels;      ///< width x channels
+  Eigen::VectorXd x;  ///< offsets, largest magnitude 1
+  Matrix known;       ///< width x n_in
+  Matrix channels;    ///< width x channels
   bool transient = false;
 };
 
@@ -61,9 +65,9 @@ double pole_distance(const Eigen::VectorXcd& a, const Eigen::VectorXd& x) {
 }
 
 struct RationalFit {
-  Matrix G_Z;                     ///< channels x n_in
+  Matrix G_Z;  ///< channels x n_in
   Matrix C_Z;
-  std::vector<Matrix> P;          ///< a channel: n_in x width, times A_c of every row: what maps V_c to b_c0
+  std::vector<Matrix> P;  ///< a channel: n_in x width, times A_c of every row: what maps V_c to b_c0
   double condition = 1.0;
   bool trusted = true;
 };
@@ -98,6 +102,13 @@ RationalFit fit(const Window& w, const LocalRationalOptions& options) {
     decomposition.setThreshold(1e-14);
     decomposition.compute(l);
     const Matrix inverse = decomposition.pseudoInverse();
+    // What the smallest solution does not leave open is a row of L^+ L = 1; two inputs alike make theirs 1/2.
+    Matrix open = inverse.bottomRows(n) * l;
+    open.rightCols(n) -= Matrix::Identity(n, n);
+    if (!(open.norm() < kUndetermined)) {
+      out.trusted = false;  // polynomials say whether it is the window or the references
+      return out;
+    }
     const Eigen::VectorXcd theta = inverse * y;
     residual.row(c) = (y - l * theta).transpose();
     out.G_Z.row(c) = length.tail(n).cwiseInverse().asDiagonal() * theta.tail(n);
@@ -105,20 +116,23 @@ RationalFit fit(const Window& w, const LocalRationalOptions& options) {
       out.trusted = false;
       return out;
     }
-    const Eigen::VectorXcd a = length.head(options.order).cwiseInverse().asDiagonal() * theta.head(options.order);
+    const Eigen::VectorXcd a =
+        length.head(options.order).cwiseInverse().asDiagonal() * theta.head(options.order);
     out.trusted = out.trusted && pole_distance(a, w.x) > options.guard * spacing;
     const Eigen::VectorXcd weight = denominator(a, w.x);
     out.P.push_back(length.tail(n).cwiseInverse().asDiagonal() * inverse.bottomRows(n) * weight.asDiagonal());
     spread.push_back((Matrix::Identity(width, width) - l * inverse) * weight.asDiagonal());
-    const Eigen::VectorXd diagonal = decomposition.matrixQTZ().diagonal().cwiseAbs().head(decomposition.rank());
+    const Eigen::VectorXd diagonal =
+        decomposition.matrixQTZ().diagonal().cwiseAbs().head(decomposition.rank());
     out.condition = std::max(out.condition, diagonal.maxCoeff() / diagonal.minCoeff());
   }
   out.C_Z.resize(channels, channels);
   for (Eigen::Index c = 0; c < channels; ++c) {
     for (Eigen::Index d = 0; d <= c; ++d) {
       // E residual_c residual_d^H = C_Z,cd tr(spread_c spread_d^H)
-      const std::complex<double> expected =
-          (spread[static_cast<std::size_t>(c)].array() * spread[static_cast<std::size_t>(d)].array().conjugate()).sum();
+      const std::complex<double> expected = (spread[static_cast<std::size_t>(c)].array() *
+                                             spread[static_cast<std::size_t>(d)].array().conjugate())
+                                                .sum();
       const double size = std::abs(expected);
       out.C_Z(c, d) = size > 0.0 ? residual.row(d).dot(residual.row(c)) / expected : 0.0;
       out.C_Z(d, c) = std::conj(out.C_Z(c, d));
@@ -128,10 +142,12 @@ RationalFit fit(const Window& w, const LocalRationalOptions& options) {
 }
 
 /// sum_cd v_c conj(v_d) C_cd sum_w x_c(w) conj(x_d(w)), x_c = K_j^T P_c diag(A_c): variance of one element.
-double element_variance(const RationalFit& f, const Eigen::RowVectorXcd& v, const Eigen::VectorXcd& k_column) {
+double element_variance(const RationalFit& f, const Eigen::RowVectorXcd& v,
+                        const Eigen::VectorXcd& k_column) {
   const Eigen::Index channels = f.G_Z.rows();
   Matrix x(channels, f.P.front().cols());
-  for (Eigen::Index c = 0; c < channels; ++c) x.row(c) = v(c) * (k_column.transpose() * f.P[static_cast<std::size_t>(c)]);
+  for (Eigen::Index c = 0; c < channels; ++c)
+    x.row(c) = v(c) * (k_column.transpose() * f.P[static_cast<std::size_t>(c)]);
   return (f.C_Z.array() * (x * x.adjoint()).array()).sum().real();
 }
 
@@ -146,40 +162,58 @@ void store_rational(FrmEstimate& e, int k, const RationalFit& f) {
     inverse = f.G_Z.bottomRows(e.n_in).inverse();
   }
   for (int i = 0; i < e.n_out; ++i) {
-    for (int j = 0; j < e.n_in; ++j) e.element_variance[k](i, j) = element_variance(f, v.row(i), inverse.col(j));
+    for (int j = 0; j < e.n_in; ++j)
+      e.element_variance[k](i, j) = element_variance(f, v.row(i), inverse.col(j));
   }
 }
 
-void estimate_line(ResponseEstimate& out, int k, const Window& w, const LocalRationalOptions& options) {
-  FrmEstimate& e = out.frm;
+/// Whether the line had to fall back to polynomials.
+bool estimate_line(FrmEstimate& e, int k, const Window& w, const LocalRationalOptions& options) {
   const RationalFit rational = fit(w, options);
   if (rational.trusted) {
     store_rational(e, k, rational);
   } else {
     store_line(e, k, regress_line(regressor(w, options.order, nullptr), w.channels, e.n_in));
     for (int i = 0; i < e.n_out; ++i) {
-      for (int j = 0; j < e.n_in; ++j) e.element_variance[k](i, j) = e.B[k](j, j).real() * e.C_V[k](i, i).real();
+      for (int j = 0; j < e.n_in; ++j)
+        e.element_variance[k](i, j) = e.B[k](j, j).real() * e.C_V[k](i, i).real();
     }
-    out.fallback.push_back(e.lines[static_cast<std::size_t>(k)]);
   }
   e.B[k].setZero();
   e.C_V[k].setZero();
+  return !rational.trusted;
+}
+
+/// estimate_line for all lines, `window(k)` being theirs.
+template <typename WindowOf>
+void estimate_lines(ResponseEstimate& out, const LocalRationalOptions& options, const WindowOf& window) {
+  FrmEstimate& e = out.frm;
+  std::vector<char> fell_back(e.lines.size(), 0);
+  for_each_line(e.line_count(), options.threads, [&](int k) {
+    fell_back[static_cast<std::size_t>(k)] = estimate_line(e, k, window(k), options) ? 1 : 0;
+  });
+  for (std::size_t k = 0; k < fell_back.size(); ++k) {
+    if (fell_back[k] != 0) out.fallback.push_back(e.lines[k]);
+  }
 }
 
 Status check(const Measurement& m, const LocalRationalOptions& o, bool periodic) {
   const int parameters = (o.order + 1) * m.n_in() + o.order + (periodic ? 0 : o.order + 1);
-  if (o.order < 1 || o.order > 8) return fail(Error{"", 0, "order", std::to_string(o.order) + " is not in 1 ... 8"});
+  if (o.order < 1 || o.order > 8)
+    return fail(Error{"", 0, "order", std::to_string(o.order) + " is not in 1 ... 8"});
   if (2 * o.n_e + 1 <= parameters) {
-    return fail(Error{"", 0, "n-e", "a rational fit of order " + std::to_string(o.order) + " has " +
-                                        std::to_string(parameters) + " unknowns, take n_E >= " +
-                                        std::to_string((parameters + 1) / 2)});
+    return fail(Error{"", 0, "n-e",
+                      "a rational fit of order " + std::to_string(o.order) + " has " +
+                          std::to_string(parameters) +
+                          " unknowns, take n_E >= " + std::to_string((parameters + 1) / 2)});
   }
   return {};
 }
 
 Result<ResponseEstimate> of_periods(const Measurement& m, const LocalRationalOptions& options) {
   // The fast LPM's grid serves both as windows and as the check of lines and periods; its q is that of the polynomial.
-  Result<LpmGrid> grid = LpmGrid::create(m.experiment, {options.n_e, options.order, options.n_transient}, m.n_in());
+  Result<LpmGrid> grid =
+      LpmGrid::create(m.experiment, {options.n_e, options.order, options.n_transient}, m.n_in());
   if (!grid) return fail(grid.error());
   const MeanSpectra spectra = remove_transient(m, grid->transient());
   ResponseEstimate out;
@@ -193,7 +227,7 @@ Result<ResponseEstimate> of_periods(const Measurement& m, const LocalRationalOpt
   e.q = grid->q() - options.order;
   e.q_noise = grid->q_noise();
   e.element_variance.resize(e.n_out, e.n_in, e.line_count());
-  for (int k = 0; k < e.line_count(); ++k) {
+  estimate_lines(out, options, [&](int k) {
     e.border[static_cast<std::size_t>(k)] = grid->border(k) ? 1 : 0;
     e.C_Z_noise[k] = spectra.noise[k];
     store_input_quality(e, k, spectra.mean.row(k).tail(e.n_in).transpose());
@@ -202,9 +236,10 @@ Result<ResponseEstimate> of_periods(const Measurement& m, const LocalRationalOpt
     w.x = Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
     const Matrix z = spectra.mean.middleRows(grid->first(k), grid->window());
     w.channels = e.indirect ? z : Matrix(z.leftCols(e.n_out));
-    w.known = e.indirect ? Matrix(spectra.reference.middleRows(grid->first(k), grid->window())) : Matrix(z.rightCols(e.n_in));
-    estimate_line(out, k, w, options);
-  }
+    w.known = e.indirect ? Matrix(spectra.reference.middleRows(grid->first(k), grid->window()))
+                         : Matrix(z.rightCols(e.n_in));
+    return w;
+  });
   return out;
 }
 
@@ -219,18 +254,19 @@ Result<ResponseEstimate> of_record(const Measurement& m, const LocalRationalOpti
   e.element_variance.resize(e.n_out, n, e.line_count());
   Matrix z(band->last + 1, e.n_out + n);
   z << record_spectrum(m.outputs, band->last + 1), record_spectrum(m.inputs, band->last + 1);
-  const Matrix known = e.indirect ? record_spectrum(m.references, band->last + 1) : z.rightCols(n);
-  Window w;
-  w.transient = true;
-  for (int k = 0; k < e.line_count(); ++k) {
+  Matrix known = e.indirect ? record_spectrum(m.references, band->last + 1) : z.rightCols(n);
+  drop_rounding(known);
+  estimate_lines(out, options, [&](int k) {
+    Window w;
+    w.transient = true;
     const int bin = e.lines[static_cast<std::size_t>(k)], first = band->window(bin, width);
     const int largest = std::max(bin - first, first + width - 1 - bin);
     w.x = Eigen::VectorXd::LinSpaced(width, first - bin, first + width - 1 - bin) / largest;
     w.known = known.middleRows(first, width);
     w.channels = z.middleRows(first, width).leftCols(e.indirect ? e.n_out + n : e.n_out);
     store_input_quality(e, k, z.row(bin).tail(n).transpose());
-    estimate_line(out, k, w, options);
-  }
+    return w;
+  });
   return out;
 }
 
@@ -241,7 +277,8 @@ Result<ResponseEstimate> local_rational(const Measurement& m, const LocalRationa
   if (Status status = check(m, options, periodic); !status) return fail(status.error());
   Result<ResponseEstimate> out = periodic ? of_periods(m, options) : of_record(m, options);
   if (out && !out->fallback.empty()) {
-    out->notes.push_back("at " + std::to_string(out->fallback.size()) + " of " + std::to_string(out->frm.line_count()) +
+    out->notes.push_back("at " + std::to_string(out->fallback.size()) + " of " +
+                         std::to_string(out->frm.line_count()) +
                          " lines a pole lies too near the lines: local polynomials there");
   }
   return out;

@@ -18,7 +18,8 @@
 //
 // Guard: a root of A_c closer to a bin of the window than a quarter of the bins' spacing makes the fit meaningless
 // between bins; such a line falls back to the local polynomial of the same window and is listed in `fallback`. So does
-// one whose A_c has coefficients that are not finite.
+// one whose A_c has coefficients that are not finite, and one whose b_0 the window leaves open: the smallest solution
+// would share the response among inputs that cannot be told apart, where polynomials give singular_regressor.
 #pragma once
 
 #include "core/base/error.h"
@@ -27,10 +28,11 @@
 namespace fatmc {
 
 struct LocalRationalOptions {
-  int n_e = 6;            ///< lines or bins on each side
-  int order = 2;          ///< R of numerator, denominator and transient
-  int n_transient = 5;    ///< non-excited bins on each side (periodic records)
-  double guard = 0.25;    ///< least distance of a pole from a bin, in mean spacings of the window
+  int n_e = 6;          ///< lines or bins on each side
+  int order = 2;        ///< R of numerator, denominator and transient
+  int n_transient = 5;  ///< non-excited bins on each side (periodic records)
+  double guard = 0.25;  ///< least distance of a pole from a bin, in mean spacings of the window
+  int threads = 1;      ///< the result does not depend on it
 };
 
 Result<ResponseEstimate> local_rational(const Measurement& measurement, const LocalRationalOptions& options);

@@ -1,12 +1,10 @@
-// The four kinds of confidence region of a frequency response matrix, all in standard deviations of an
-// element.
+// The four kinds of confidence region of a frequency response matrix, all in standard deviations of an element.
 //
-// | kind         | statement at level p                                   | radius | | univariate   | one
-// element lies in its disc                           | sqrt F^-1(p; 2, 2q)                   (2.207)  | |
-// bonferroni   | all n_in n_out elements lie in theirs, at least p      | sqrt F^-1(1 - (1-p)/n; 2, 2q)
-// (2.206)  | | simultaneous | every linear combination of the elements does          | sqrt T^2(p) (2.205
-// corrected) | | joint        | vec(G^-G)^H (B kron C_V)^-1 vec(G^-G) <= radius^2       | sqrt T^2(p) (2.200
-// corrected) |
+// | kind         | statement at level p                              | radius                                      |
+// | univariate   | one element lies in its disc                      | sqrt F^-1(p; 2, 2q)                (2.207)  |
+// | bonferroni   | all n_in n_out elements lie in theirs, at least p | sqrt F^-1(1 - (1-p)/n; 2, 2q)      (2.206)  |
+// | simultaneous | every linear combination of the elements does     | sqrt T^2(p)              (2.205 corrected)  |
+// | joint        | vec(G^-G)^H (B kron C_V)^-1 vec(G^-G) <= radius^2 | sqrt T^2(p)              (2.200 corrected)  |
 //
 // T^2(p): quantile of the complex Lawley-Hotelling trace (lawley_hotelling.h). Simultaneous discs are the
 // shadows of the joint region: larger than Bonferroni's where only the elements are asked for. The joint

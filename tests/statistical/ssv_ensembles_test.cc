@@ -83,7 +83,16 @@ TEST(SsvEnsembles, TheGapsThatAreLeftAreReal) {
     EXPECT_EQ(met.above, 0) << "the lower bound can be improved";
     EXPECT_LT(met.worst_gap, 0.1);
   }
-  EXPECT_GE(two.plants, 980) << "98 % of plants whose radii differ as those of an aircraft's elements do";
+  // What was measured when the solver was written: these notice a solver that grows worse, they are no bar set
+  // beforehand. How often the bounds meet is a property of the ensemble, and none of them stands for aircraft.
+  const auto as_measured = [](const Met& met, double share) {
+    EXPECT_GE(met.plants, kPlants * share - 3.0 * std::sqrt(kPlants * share * (1.0 - share)));
+  };
+  as_measured(loops, 0.975);
+  as_measured(equal, 0.896);
+  as_measured(half, 0.920);
+  as_measured(one, 0.950);
+  as_measured(two, 0.982);
 }
 
 }  // namespace

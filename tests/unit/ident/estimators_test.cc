@@ -18,8 +18,9 @@ using testing::HasSubstr;
 RandomStream stream_of(std::uint64_t study) { return RandomStream({study, 0, 0, 0}, "estimators"); }
 
 /// Static gains in steady state.
-Measurement static_periodic(const Eigen::MatrixXd& gain, int periods, const std::vector<std::vector<int>>& lines,
-                            std::vector<int> all, RandomStream& stream) {
+Measurement static_periodic(const Eigen::MatrixXd& gain, int periods,
+                            const std::vector<std::vector<int>>& lines, std::vector<int> all,
+                            RandomStream& stream) {
   Measurement m;
   m.experiment = {std::move(all), 256, periods, 50.0};
   m.inputs.resize(256 * periods, gain.cols());
@@ -56,7 +57,8 @@ TEST(Etfe, IsExactInSteadyStateWithoutNoise) {
   const auto estimate = estimate_response(EstimationMethod::etfe, {&m, 1}, {});
   ASSERT_TRUE(estimate) << estimate.error().text();
   for (int k = 0; k < 5; ++k) {
-    EXPECT_LT(std::abs(estimate->frm.G[k](0, 0) - mode.response(lines[static_cast<std::size_t>(k)] / 256.0)), 1e-12);
+    EXPECT_LT(std::abs(estimate->frm.G[k](0, 0) - mode.response(lines[static_cast<std::size_t>(k)] / 256.0)),
+              1e-12);
   }
 }
 
@@ -101,7 +103,8 @@ TEST(LineAverages, SeparateInputsByExperiments) {
   std::vector<Measurement> m;
   const std::vector<int> lines = {5, 9, 13};
   for (int e = 0; e < 3; ++e) m.push_back(static_periodic(gain, 2, {lines, lines}, lines, stream));
-  for (const EstimationMethod method : {EstimationMethod::etfe, EstimationMethod::tlpm, EstimationMethod::robust}) {
+  for (const EstimationMethod method :
+       {EstimationMethod::etfe, EstimationMethod::tlpm, EstimationMethod::robust}) {
     const auto estimate = estimate_response(method, m, {});
     ASSERT_TRUE(estimate) << estimate.error().text();
     EXPECT_LT(worst_error(estimate->frm, gain), 1e-12);
@@ -113,8 +116,10 @@ TEST(LineAverages, RefuseOneRecordOfSeveralInputsOnTheSameLines) {
   RandomStream stream = stream_of(5);
   const std::vector<int> lines = {5, 9, 13};
   const Measurement m = static_periodic(gain_of(1, 2), 2, {lines, lines}, lines, stream);
-  EXPECT_THAT(estimate_response(EstimationMethod::etfe, {&m, 1}, {}).error().text(), HasSubstr("several inputs"));
-  EXPECT_THAT(estimate_response(EstimationMethod::robust, {&m, 1}, {}).error().text(), HasSubstr("3 or more"));
+  EXPECT_THAT(estimate_response(EstimationMethod::etfe, {&m, 1}, {}).error().text(),
+              HasSubstr("several inputs"));
+  EXPECT_THAT(estimate_response(EstimationMethod::robust, {&m, 1}, {}).error().text(),
+              HasSubstr("3 or more"));
 }
 
 TEST(LineAverages, CallExperimentsWithTheSamePhasesSingular) {
@@ -152,7 +157,8 @@ TEST(ArbitraryLpm, SaysWhichWindowLeavesADegreeOfFreedom) {
   m.outputs = white(500, 1, 1.0, stream);
   EstimatorOptions options;
   options.n_e = 5;
-  EXPECT_THAT(estimate_response(EstimationMethod::arbitrary, {&m, 1}, options).error().text(), HasSubstr("n_E >= 6"));
+  EXPECT_THAT(estimate_response(EstimationMethod::arbitrary, {&m, 1}, options).error().text(),
+              HasSubstr("n_E >= 6"));
 }
 
 /// Largest error over the band about the mode, relative to the peak.
@@ -226,6 +232,53 @@ TEST(LocalRational, KeepsAStaticSystemWhoseDenominatorIsOpen) {
   EXPECT_LT(worst_error(estimate->frm, gain_of(2, 2)), 1e-10);
 }
 
+TEST(LocalRational, SharesNoResponseAmongInputsThatCannotBeToldApart) {
+  RandomStream stream = stream_of(17);
+  Measurement m;
+  m.experiment.rate_hz = 1.0;
+  m.inputs = white(512, 2, 1.0, stream);
+  m.inputs.col(1) = 2.0 * m.inputs.col(0);
+  m.outputs = m.inputs * gain_of(2, 2).transpose() + white(512, 2, 0.1, stream);
+  const auto estimate = estimate_response(EstimationMethod::lrm, {&m, 1}, {});
+  ASSERT_TRUE(estimate) << estimate.error().text();
+  for (const LineStatus status : estimate->frm.status) EXPECT_EQ(status, LineStatus::singular_regressor);
+}
+
+TEST(ArbitraryLpm, AndLrmEstimateNothingWhereTheInputIsRounding) {
+  // An input of bins 50 ... 100, a file of 9 digits: elsewhere only the rounding of the ninth.
+  RandomStream stream = stream_of(19);
+  const Eigen::VectorXd u = multisine(1024, 1, consecutive_lines(50, 51), stream);
+  Measurement m;
+  m.experiment.rate_hz = 1.0;
+  m.inputs = (u * 1e9).array().round() / 1e9;
+  m.outputs = m.inputs + white(1024, 1, 1e-3, stream);
+  for (const EstimationMethod method : {EstimationMethod::arbitrary, EstimationMethod::lrm}) {
+    const auto estimate = estimate_response(method, {&m, 1}, {});
+    ASSERT_TRUE(estimate) << estimate.error().text();
+    for (int k = 0; k < estimate->frm.line_count(); ++k) {
+      const int bin = estimate->frm.lines[static_cast<std::size_t>(k)];
+      const LineStatus status = estimate->frm.status[static_cast<std::size_t>(k)];
+      const LineStatus expected = bin < 40 || bin > 110 ? LineStatus::singular_regressor : LineStatus::ok;
+      const bool edge = std::min(std::abs(bin - 50), std::abs(bin - 100)) <= 10;  // windows half empty
+      EXPECT_TRUE(edge || status == expected) << bin;
+    }
+  }
+}
+
+TEST(LocalRational, GivesTheSameEstimateOnAnyNumberOfThreads) {
+  const Measurement m = mode_record(Mode(0.1, 0.02), 18);
+  EstimatorOptions options;
+  const auto one = estimate_response(EstimationMethod::lrm, {&m, 1}, options);
+  options.threads = 3;
+  const auto three = estimate_response(EstimationMethod::lrm, {&m, 1}, options);
+  ASSERT_TRUE(one && three);
+  EXPECT_EQ(one->fallback, three->fallback);
+  for (int k = 0; k < one->frm.line_count(); ++k) {
+    ASSERT_EQ(one->frm.G[k](0, 0), three->frm.G[k](0, 0));
+    ASSERT_EQ(one->frm.variance(k, 0, 0), three->frm.variance(k, 0, 0));
+  }
+}
+
 TEST(Welch, IsExactForAStaticSystemOfCorrelatedInputs) {
   RandomStream stream = stream_of(13);
   const Eigen::MatrixXd gain = gain_of(2, 2);
@@ -249,12 +302,14 @@ TEST(Welch, RefusesSegmentsThatAreTooFew) {
   m.outputs = white(512, 1, 1.0, stream);
   EstimatorOptions options;
   options.welch.segment_samples = 400;
-  EXPECT_THAT(estimate_response(EstimationMethod::welch, {&m, 1}, options).error().text(), HasSubstr("shorter"));
+  EXPECT_THAT(estimate_response(EstimationMethod::welch, {&m, 1}, options).error().text(),
+              HasSubstr("shorter"));
 }
 
 TEST(Welch, CountsHalfOverlappingHannSegmentsAsWelchDoes) {
   // rho of half-overlapping Hann windows is 1/6.
-  EXPECT_NEAR(effective_segments(15, 1024, 512, Taper::hann), 15.0 / (1.0 + 2.0 * (14.0 / 15.0) / 36.0), 1e-3);
+  EXPECT_NEAR(effective_segments(15, 1024, 512, Taper::hann), 15.0 / (1.0 + 2.0 * (14.0 / 15.0) / 36.0),
+              1e-3);
   EXPECT_NEAR(effective_segments(8, 1024, 1024, Taper::none), 8.0, 1e-12);
 }
 

@@ -87,19 +87,53 @@ TEST(JointRecords, TakeThoseBinsByThemselvesWhereSmoothingShows) {
   }
 }
 
-TEST(JointRecords, SmoothingLowersTheVarianceThatIsReported) {
-  const auto set = records(4, 0.0, 0.1, 3);
-  const auto smooth = joint_records(set, {.n_e = 9});
-  const auto narrow = joint_records(set, {.n_e = 2});
-  ASSERT_TRUE(smooth && narrow);
-  EXPECT_EQ(smooth->frm.q, 19 * 2);
-  EXPECT_EQ(narrow->frm.q, 5 * 2);
-  double a = 0.0, b = 0.0;
-  for (int k = 100; k < 400; ++k) {
-    a += smooth->frm.variance(k, 0, 0);
-    b += narrow->frm.variance(k, 0, 0);
+/// Impulses whose signs are orthogonal over four records: every bin has the inputs N^-1/2 [1, 1], N^-1/2 [1, -1] twice.
+std::vector<Measurement> orthogonal_records(double noise, std::uint64_t seed) {
+  std::vector<Measurement> out;
+  for (int e = 0; e < 4; ++e) {
+    RandomStream stream({seed, static_cast<std::uint64_t>(e), 0, 0}, "joint");
+    Measurement m;
+    m.experiment.rate_hz = 100.0;
+    m.inputs.setZero(kSamples, 2);
+    m.inputs.row(0) << 1.0, e % 2 == 0 ? 1.0 : -1.0;
+    m.outputs = m.inputs;  // G = I
+    for (Eigen::Index i = 0; i < m.outputs.size(); ++i) m.outputs.data()[i] += noise * stream.normal();
+    out.push_back(std::move(m));
   }
-  EXPECT_LT(a, 0.5 * b);
+  return out;
+}
+
+/// Variance of a quadratic's value in the middle of w equal points, over that of one point: 3 (3 w^2 - 7)/(4 w (w^2 - 4)).
+double quadratic_gain(int w) { return 3.0 * (3.0 * w * w - 7.0) / (4.0 * w * (w * w - 4.0)); }
+
+TEST(JointRecords, SmoothingLowersTheReportedVarianceByTheGainOfItsQuadraticAndNothingElsewhere) {
+  const double noise = 0.1, alone_b = kSamples / 4.0;  // (U^H U)^-1 of a bin
+  for (const int n_e : {2, 9}) {
+    const auto estimate = joint_records(orthogonal_records(noise, 3), {.n_e = n_e});
+    ASSERT_TRUE(estimate);
+    const FrmEstimate& frm = estimate->frm;
+    const int width = 2 * n_e + 1;
+    EXPECT_EQ(frm.q, width * 2);
+    double sum = 0.0;
+    int smoothed = 0, count = 0;
+    for (int k = n_e; k + n_e < frm.line_count(); ++k, ++count) {
+      const bool alone =
+          std::binary_search(estimate->fallback.begin(), estimate->fallback.end(), frm.lines[index(k)]);
+      const double b = alone ? alone_b : alone_b * quadratic_gain(width);
+      smoothed += alone ? 0 : 1;
+      for (int j = 0; j < 2; ++j) {
+        EXPECT_NEAR(frm.B[k](j, j).real(), b, 1e-9 * b);
+        for (int i = 0; i < 2; ++i) {
+          EXPECT_NEAR(frm.variance(k, i, j), frm.B[k](j, j).real() * frm.C_V[k](i, i).real(),
+                      1e-12 * frm.variance(k, i, j));
+        }
+      }
+      sum += frm.C_V[k](0, 0).real() / (noise * noise);
+    }
+    EXPECT_GT(smoothed, 9 * count / 10);
+    // 2 degrees of freedom a bin, the two ends of the record apart
+    EXPECT_NEAR(sum / count, 1.0, 3.0 / std::sqrt(2.0 * count)) << n_e;
+  }
 }
 
 TEST(JointRecords, ErrorsFollowTheLawOfTheirVarianceAndTheGuardItsLevel) {
