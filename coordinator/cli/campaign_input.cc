@@ -33,7 +33,8 @@ Status apply(const SpecChanges& changes, Tree& tree, const CampaignSpec& decoded
     const auto repetitions = changes.trials.value_or(static_cast<std::int64_t>(decoded.cells[i].repetitions));
     const double scaled = std::round(static_cast<double>(repetitions) * changes.scale.value_or(1.0));
     if (!(scaled <= static_cast<double>(kMostRepetitions))) {
-      return fail(Error{"", 0, "--scale", "gives more than 1000000000 repetitions, write a smaller one"});
+      return fail(Error{"", 0, "--scale",
+                        "gives more than 1000000000 repetitions or is no number, write one such as 0.5"});
     }
     const auto option = changes.scale ? "--scale" : "--trials";
     items[i].set("repetitions",
@@ -87,7 +88,7 @@ Status apply_size(const std::string& size, Tree& tree) {
 void add_spec_options(CLI::App& command, SpecChanges& changes) {
   command.add_option("--trials", changes.trials, "repetitions of each cell, instead of the spec's")
       ->check(CLI::Range(std::int64_t{1}, kMostRepetitions));
-  command.add_option("--scale", changes.scale, "multiplies repetitions")->check(CLI::Range(1e-9, 1e9));
+  command.add_option("--scale", changes.scale, "multiplies repetitions")->check(CLI::PositiveNumber);
   command
       .add_option("--size", changes.size,
                   "small or full: a size that the spec gives by [size.small] or [size.full]")

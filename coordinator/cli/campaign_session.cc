@@ -131,6 +131,7 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
     write_last(options);
     return std::nullopt;
   }
+  const std::uint64_t planned_at_first = state.planned();
   const std::string endpoint = place.socket.endpoint();
   CampaignServer server(std::move(place.socket), {}, state, store);
   std::unique_ptr<Launcher> launcher;
@@ -183,7 +184,10 @@ std::optional<Exit> serve(const CampaignSpec& spec, const SessionOptions& option
   if (launcher) launcher->stop(kLauncherPatience);
   report_counters(state, server.malformed());
   if (end == ServerEnd::finished) return std::nullopt;
-  const std::string resume = "; what is stored stays, go on by: " + options.resume_command;
+  // Of a plan that `fatmc extend` has made longer, the command of this run would do a part.
+  const bool is_extended = state.planned() > planned_at_first && options.workers > 0 && !options.launcher;
+  const std::string resume =
+      "; what is stored stays, go on by: " + (is_extended ? extend_command(options) : options.resume_command);
   if (end == ServerEnd::interrupted) {
     std::fprintf(stderr, "fatmc: stopped with %llu of %llu trials stored%s\n",
                  static_cast<unsigned long long>(state.stored()),
@@ -234,6 +238,7 @@ Exit run_session(const CampaignSpec& spec, const SessionOptions& options) {
   }
   return use_database(options.database, [&] {
     const Exit printed = print_summary(options.database);
+    if (printed == Exit::done && options.shard.count == 1) report_rest(options);
     return printed == Exit::done ? report_quarantine(options) : printed;
   });
 }

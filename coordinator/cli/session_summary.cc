@@ -88,6 +88,20 @@ Exit print_summary(const std::string& database) {
   return Exit::done;
 }
 
+std::string extend_command(const SessionOptions& options) {
+  return shell_line({"fatmc", "extend", options.database});
+}
+
+void report_rest(const SessionOptions& options) {
+  const Result<CampaignReader> reader = CampaignReader::open(options.database);
+  if (!reader || reader->stored() >= reader->spec().trial_count()) return;
+  std::fprintf(stderr,
+               "fatmc: all trials that this run asked for are stored; the database plans %llu more, by an "
+               "earlier run or fatmc extend, which this computes: %s\n",
+               static_cast<unsigned long long>(reader->spec().trial_count() - reader->stored()),
+               extend_command(options).c_str());
+}
+
 // Trials that were given up make a campaign partial.
 Exit report_quarantine(const SessionOptions& options) {
   Result<CampaignReader> reader = CampaignReader::open(options.database);

@@ -82,7 +82,7 @@ void CampaignState::on_hello(const WorkerId& worker, const Hello& hello, Monoton
   }
   suspects_.absolve(worker);
   // A worker that says HELLO anew has dropped what it had not begun: its leases are free.
-  if (workers_.contains(worker)) forget(worker, {}, out);
+  if (workers_.contains(worker)) forget(worker, {}, now, out);
   out.note("worker " + worker.substr(0, 8) + " joins: host " + hello.host + ", process " +
            std::to_string(hello.pid) + ", " + std::to_string(hello.jobs) + " at a time");
   WorkerState& state = workers_[worker];
@@ -103,7 +103,9 @@ void CampaignState::on_heartbeat(const WorkerId& worker, const Heartbeat& heartb
 
 void CampaignState::on_credit(const WorkerId& worker, const Credit& credit, MonotonicTime now, Outbox& out) {
   WorkerState& state = workers_.at(worker);
-  if (credit.newest_lease < state.newest_lease) return;  // a lease is on its way: the news is stale
+  // A lease is on its way, and the news is stale. Unless others have brought its trials meanwhile: then it may
+  // have been lost, and nothing would ever make up for it.
+  if (credit.newest_lease < state.newest_lease && leases_.contains(state.newest_lease)) return;
   state.idle = std::min(credit.idle, state.hello.jobs);
   state.waiting = credit.queued == 0;
   if (state.waiting) grant(worker, state, now, out);

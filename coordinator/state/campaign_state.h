@@ -10,7 +10,8 @@
 // them: the store drops a row that it has, so that lease expiry can only cost work and never a result.
 //
 // Idle workers at the end of a run get copies of what is still out, so that a slow or silent worker makes it
-// at most one trial longer. A trial over which three workers died gets the outcome "quarantined".
+// at most one trial longer. A trial over which three workers died, one after another, gets the
+// outcome "quarantined".
 //
 // Invariants (tests/unit/state): what was acknowledged is stored; a trial is stored once; while a worker
 // lives, the run ends.
@@ -191,7 +192,7 @@ class CampaignState {
   void take_row(const WorkerId& worker, const ComputedRow& row, MonotonicTime now);
   void measure(CellState& cell, std::uint64_t duration_ns);
   void reclaim(std::uint64_t lease);
-  void forget(const WorkerId& worker, const std::string& how, Outbox& out);
+  void forget(const WorkerId& worker, const std::string& how, MonotonicTime now, Outbox& out);
   [[nodiscard]] std::uint32_t next_cell() const;
   void quarantine(TrialKey trial, Outbox& out);
   bool grant(const WorkerId& worker, WorkerState& state, MonotonicTime now, Outbox& out);

@@ -176,7 +176,7 @@ void CampaignState::reclaim(std::uint64_t id) {
   if (worker != workers_.end() && worker->second.newest_lease == id) worker->second.newest_lease = 0;
 }
 
-void CampaignState::forget(const WorkerId& worker, const std::string& how, Outbox& out) {
+void CampaignState::forget(const WorkerId& worker, const std::string& how, MonotonicTime now, Outbox& out) {
   std::vector<std::uint64_t> held;
   std::vector<TrialKey> given_up;
   for (const auto& [id, lease] : leases_) {
@@ -186,7 +186,7 @@ void CampaignState::forget(const WorkerId& worker, const std::string& how, Outbo
     for (const auto& [first, last] : lease.missing.ranges()) {
       for (std::uint64_t index = first; index < last; ++index) {
         const TrialKey key{lease.cell, index};
-        suspects_.blame(key, worker, how);
+        suspects_.blame(key, {worker, how, lease.since, now});
         if (suspects_.deaths(key) >= options_.deaths_to_quarantine) given_up.push_back(key);
       }
     }
@@ -226,7 +226,7 @@ void CampaignState::quarantine(TrialKey trial, Outbox& out) {
 }
 
 void CampaignState::on_gone(const WorkerId& worker, const std::string& how, MonotonicTime now, Outbox& out) {
-  forget(worker, how, out);
+  forget(worker, how, now, out);
   serve_waiting(now, out);
 }
 
@@ -241,7 +241,7 @@ void CampaignState::on_tick(MonotonicTime now, Outbox& out) {
     if (now - worker.last_heard > options_.lease_timeout) silent.push_back(id);
   }
   const std::string how = "no word for " + std::to_string(options_.lease_timeout.count()) + " ms";
-  for (const WorkerId& id : silent) forget(id, how, out);
+  for (const WorkerId& id : silent) forget(id, how, now, out);
   std::vector<std::uint64_t> overdue;
   for (const auto& [id, lease] : leases_) {
     if (now - lease.last_mentioned > options_.lease_timeout) overdue.push_back(id);

@@ -2,10 +2,12 @@
 
 namespace fatmc {
 
-void Suspects::blame(TrialKey trial, const std::string& worker, const std::string& how) {
+void Suspects::blame(TrialKey trial, const WorkerDeath& death) {
   Suspicion& suspicion = trials_[trial];
-  suspicion.workers.insert(worker);
-  suspicion.last = how;
+  if (!suspicion.workers.empty() && death.leased < suspicion.counted) return;
+  suspicion.workers.insert(death.worker);
+  suspicion.counted = death.died;
+  suspicion.last = death.how;
 }
 
 void Suspects::absolve(const std::string& worker) {

@@ -174,6 +174,31 @@ class Engine(engine_test.Engine):
         self.assertIn("go on by: fatmc extend x.db", text)
         self.assertIn("planned and not stored", self.done("explain", "x.db", "c/2"))
 
+    def test_trials_that_a_run_did_not_ask_for_are_told_and_computed_by_extend(self):
+        self.spec(CELL.format(n=10, rest=""))
+        self.assertNotIn("the database plans", self.call("run", "spec.toml", "--db", "more.db", "--trials", "6").stderr)
+        with sqlite3.connect(self.path("more.db")) as connection:
+            connection.execute("UPDATE cell SET repetitions = 10")
+        result = self.call("run", "spec.toml", "--db", "more.db", "--trials", "8")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("the database plans 2 more", result.stderr)
+        self.done(*result.stderr.split("which this computes: fatmc ")[1].split("\n")[0].split())
+        self.assertEqual(self.call("status", "more.db", "--check").returncode, 0)
+
+    def test_a_stop_of_a_run_that_was_extended_names_the_command_for_all_of_it(self):
+        self.spec(CELL.format(n=2, rest="work = 3000000"))
+        self.done("run", "spec.toml", "--db", "e.db")
+        self.done("pause", "e.db")
+        process = self.start(FATMC, "run", "spec.toml", "--db", "e.db", "--workers", "1", "--trials", "3")
+        until(lambda: "coordinator: running" in self.call("status", "e.db").stdout, "a coordinator waits")
+        self.done("extend", "e.db", "--trials", "3000")
+        self.done("resume", "e.db")
+        until(lambda: self.stored("e.db") > 3, "it takes the trials up")
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=LIMIT_S)
+        self.assertEqual(process.returncode, 3, errors)
+        self.assertIn("go on by: fatmc extend e.db", errors)
+
     def test_a_trial_that_takes_long_is_found_where_it_is(self):
         self.spec(CELL.format(n=1, rest="work = 9000000000"))
         process = self.start(FATMC, "run", "spec.toml", "--db", "l.db", "--workers", "1")

@@ -276,6 +276,28 @@ TEST_F(CampaignStateTest, StaleNewsOfAWorkerGivesItNoSecondLease) {
   EXPECT_EQ(out_.all<Lease>(kOne).size(), 1U);
 }
 
+TEST_F(CampaignStateTest, AWorkerWhoseLeaseWasLostAndDoneByAnotherGetsMore) {
+  CampaignState state = make(3);
+  join(state, kOne);
+  join(state, kTwo);
+  state.on_message(kTwo, Credit{1, 0, 0}, now_, out_);
+  deliver(state, kTwo, 1, {0}, seconds(2));
+  state.on_message(kOne, Credit{1, 0, 0}, now_, out_);  // trial 1; the LEASE never arrives
+  std::uint64_t two = out_.all<Lease>(kTwo).back().lease;
+  state.on_message(kTwo, Credit{1, 0, two}, now_, out_);
+  deliver(state, kTwo, 2, {2}, seconds(2));
+  two = out_.all<Lease>(kTwo).back().lease;
+  state.on_message(kTwo, Credit{1, 0, two}, now_, out_);
+  ASSERT_EQ(out_.all<Lease>(kTwo).back().first, 1U) << "a copy";
+  deliver(state, kTwo, 3, {1}, seconds(2));
+  state.on_message(kTwo, Bye{}, now_, out_);
+  state.set_repetitions(0, 4, now_, out_);
+  ASSERT_EQ(out_.all<Lease>(kOne).size(), 1U);
+  state.on_message(kOne, Heartbeat{{1, 0, 0}, {}}, now_, out_);
+  ASSERT_EQ(out_.all<Lease>(kOne).size(), 2U) << "the only worker is never left without work";
+  EXPECT_EQ(out_.all<Lease>(kOne)[1].first, 3U);
+}
+
 TEST_F(CampaignStateTest, WhatIsStoredIsNotLeased) {
   IndexRanges stored;
   stored.insert(0, 7);
@@ -418,6 +440,30 @@ TEST_F(Killers, SilenceIsDeathUntilTheWorkerSpeaksAgain) {
     state.on_tick(now_, out_);
   }
   EXPECT_EQ(state.counters().quarantined, 1U);
+}
+
+TEST_F(Killers, WorkersThatFallSilentTogetherOverCopiesOfATrialCountAsOne) {
+  CampaignState state = make(2);
+  const WorkerId holders[] = {fresh(), fresh(), fresh()};
+  join(state, kOne);
+  state.on_message(kOne, Credit{1, 0, 0}, now_, out_);
+  deliver(state, kOne, 1, {0});
+  state.on_message(kOne, Bye{}, now_, out_);
+  for (const WorkerId& holder : holders) {
+    for (const WorkerId& id : state.workers()) state.on_message(id, Heartbeat{{}, {1, 2, 3, 4}}, now_, out_);
+    join(state, holder);
+    state.on_message(holder, Credit{1, 0, 0}, now_, out_);
+    ASSERT_EQ(out_.all<Lease>(holder).size(), 1U);
+    EXPECT_EQ(out_.all<Lease>(holder)[0].first, 1U) << "a copy";
+    now_ += milliseconds(800);
+  }
+  for (int i = 0; i < 20; ++i) state.on_tick(now_ += milliseconds(100), out_);
+  EXPECT_TRUE(state.workers().empty()) << "a cable was pulled";
+  EXPECT_EQ(state.counters().quarantined, 0U);
+  die(state);
+  EXPECT_EQ(state.counters().quarantined, 0U);
+  die(state);
+  EXPECT_EQ(state.counters().quarantined, 1U) << "three in a row";
 }
 
 TEST_F(Killers, ATrialThatThrowsIsQuarantinedWithWhatItThrew) {
