@@ -1,7 +1,7 @@
 // The coordinator's socket loop: one thread that owns the ROUTER socket and the database.
 //
 // Messages go to CampaignState, whose decisions it carries out. Rows are gathered and committed in one
-// transaction as soon as there are 100, or the oldest has waited for 50 ms, or nothing more can come; only
+// transaction as soon as there are 1,000, or the oldest has waited for 50 ms, or nothing more can come; only
 // then are they acknowledged. Messages that are malformed or too large are counted and dropped.
 //
 // When the database cannot take rows (disk full, I/O error), dispatch pauses, rows that come are left with

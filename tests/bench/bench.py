@@ -53,12 +53,14 @@ def google_benchmark(program, chosen):
     path = BIN / program
     if not path.exists():
         sys.exit(f"bench: {path} is missing, run scripts/build")
-    out = subprocess.run([str(path), f"--benchmark_filter=^{chosen}", "--benchmark_format=json",
-                          f"--benchmark_repetitions={repetitions}",
-                          f"--benchmark_report_aggregates_only={str(repetitions > 1).lower()}"],
-                         check=True, capture_output=True, text=True, cwd=ROOT)
     figures = {}
-    for entry in json.loads(out.stdout)["benchmarks"]:
+    with tempfile.TemporaryDirectory() as folder:  # a file, since what is measured logs on standard output
+        subprocess.run([str(path), f"--benchmark_filter=^{chosen}", f"--benchmark_out={folder}/figures.json",
+                        f"--benchmark_repetitions={repetitions}",
+                        f"--benchmark_report_aggregates_only={str(repetitions > 1).lower()}"],
+                       check=True, capture_output=True, text=True, cwd=ROOT)
+        entries = json.loads(pathlib.Path(folder, "figures.json").read_text(encoding="utf-8"))["benchmarks"]
+    for entry in entries:
         if repetitions == 1 or entry.get("aggregate_name") == "median":
             figures.update({name: value for name, value in entry.items() if isinstance(value, float)})
     return figures
