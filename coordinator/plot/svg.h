@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "coordinator/plot/figure.h"
+#include "campaigns/base/figure.h"
 
 namespace fatmc::plot {
 
