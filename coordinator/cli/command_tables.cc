@@ -5,10 +5,13 @@
 #include <map>
 #include <memory>
 
+#include "campaigns/base/aircraft_model.h"
+#include "campaigns/formulas/aircraft_formulas.h"
 #include "campaigns/formulas/formula_tables.h"
 #include "campaigns/registry_summaries.h"
 #include "coordinator/cli/command.h"
 #include "coordinator/cli/database_use.h"
+#include "coordinator/input/toml_file.h"
 #include "coordinator/report/tables.h"
 #include "coordinator/store/campaign_store.h"
 
@@ -29,6 +32,17 @@ std::vector<std::string> last_databases() {
     if (!line.empty()) out.push_back(line);
   }
   return out;
+}
+
+// Tables belong to the FAT; none where its file is not here (another working directory) or has been changed
+// into something else.
+std::vector<TableRow> tables_of_fat() {
+  const auto tree = read_toml("campaigns/models/fat.toml");
+  if (!tree) return {};
+  const auto model = decode_aircraft_model(*tree);
+  if (!model || model->aircraft.name != "FAT") return {};
+  auto rows = aircraft_tables(*model);
+  return rows ? std::move(*rows) : std::vector<TableRow>{};
 }
 
 Result<std::vector<TableRow>> rows_of(const std::string& path) {
@@ -59,6 +73,8 @@ std::string full_name(const std::vector<std::string>& known, const std::string& 
 Exit run(const Options& options) {
   std::vector<std::string> databases = options.databases;
   std::vector<TableRow> rows = formula_tables();
+  const std::vector<TableRow> aircraft = tables_of_fat();
+  rows.insert(rows.end(), aircraft.begin(), aircraft.end());
   if (!options.only.empty() && !full_name(names_of(rows), options.only).empty()) {
     databases.clear();  // a formula table needs no database, not even one that cannot be read
   } else if (databases.empty()) {
@@ -98,8 +114,10 @@ Exit run(const Options& options) {
 
 void add_tables_command(CLI::App& app, Exit& exit) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("tables", "published figures beside ours, from formulas and databases");
-  command->add_option("DB", options->databases, "databases; without any, the formula tables and those of the last run (results/last)");
+  CLI::App* command =
+      app.add_subcommand("tables", "published figures beside ours, from formulas and databases");
+  command->add_option("DB", options->databases,
+                      "databases; without any, the formula tables and those of the last run (results/last)");
   command->add_option("--only", options->only, "one table, for instance 5-5");
   command->add_option("--format", options->format, "text, markdown or json")
       ->check(CLI::IsMember({"text", "markdown", "json"}))
