@@ -17,9 +17,10 @@ using Line = std::array<std::string, kColumns>;
 const Line kHeader = {"row", "quantity", "unit", "published", "ours", "95 % interval", "n", "verdict"};
 constexpr std::array<bool, kColumns> kIsNumber = {false, false, false, true, true, true, true, false};
 
-// Shares and decibels to a tenth, all else to four digits.
+// Shares and decibels to a tenth, small decibels to two digits, all else to four.
 std::string number(double value, const std::string& unit) {
   if (!std::isfinite(value)) return "-";
+  if (unit == "dB" && value != 0.0 && std::abs(value) < 1.0) return significant(value, 2);
   return unit == "%" || unit == "dB" ? fixed(value, 1) : significant(value, 4);
 }
 

@@ -25,10 +25,14 @@ struct FlightSetup {
   double step_s = 0.02;   ///< Runge-Kutta step; divides the tick
   double imu_step_s =
       0.005;  ///< gyro sampling (T 3.2.4); divides the tick. Its last sample of a tick is used, ...
-  bool average_imu = false;  ///< ... or the mean over the tick: a quarter of the noise, 7.5 ms of delay.
-                             ///< Rates between Runge-Kutta nodes are interpolated linearly
+  bool average_imu = false;   ///< ... or the mean over the tick: a quarter of the noise, 7.5 ms of delay.
+                              ///< Rates between Runge-Kutta nodes are interpolated linearly
   Imu imu;                    ///< the default measures exactly
   double turbulence_m_s = 0;  ///< sigma of Dryden turbulence; 0 is calm
+  /// Gusts that the aircraft meets: all six, or u, w and q alone. The airframe is symmetric, so that without lateral gusts,
+  /// lateral references and gyro noise it stays in its plane of symmetry exactly: T's "lateral states are fixed" (3.2.2).
+  enum class Gusts { all, longitudinal };
+  Gusts gusts = Gusts::all;
   enum class Plant { nonlinear, linear };
   Plant plant = Plant::nonlinear;  ///< linear: the sampled step map, gusts through its gust input, no limits
   bool closed_loop = true;         ///< false: u = r, normalised commands
