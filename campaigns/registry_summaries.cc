@@ -2,12 +2,15 @@
 
 #include <vector>
 
+#include "campaigns/conditions/summary.h"
 #include "campaigns/coverage/summary.h"
+#include "campaigns/estimators/summary.h"
 
 namespace fatmc {
 
 const SummaryStudy* find_summary_study(std::string_view name) {
-  static const std::vector<SummaryStudy> studies = {coverage::kSummaryStudy};
+  static const std::vector<SummaryStudy> studies = {conditions::kSummaryStudy, coverage::kSummaryStudy,
+                                                    estimators::kSummaryStudy};
   for (const SummaryStudy& study : studies) {
     if (study.name == name) return &study;
   }

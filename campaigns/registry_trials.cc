@@ -1,11 +1,14 @@
 #include "campaigns/registry_trials.h"
 
+#include "campaigns/conditions/trial.h"
 #include "campaigns/coverage/trial.h"
+#include "campaigns/estimators/trial.h"
 
 namespace fatmc {
 
 const std::vector<TrialStudy>& trial_studies() {
-  static const std::vector<TrialStudy> studies = {coverage::kTrialStudy};
+  static const std::vector<TrialStudy> studies = {conditions::kTrialStudy, coverage::kTrialStudy,
+                                                  estimators::kTrialStudy};
   return studies;
 }
 
