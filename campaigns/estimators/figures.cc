@@ -7,6 +7,7 @@
 #include "campaigns/estimators/cell_runs.h"
 #include "campaigns/estimators/mean_error.h"
 #include "campaigns/estimators/summary.h"
+#include "campaigns/estimators/user_choices_figure.h"
 #include "core/accuracy/response_accuracy.h"
 #include "core/base/text.h"
 
@@ -128,6 +129,7 @@ Result<std::vector<StudyFigure>> figures(const CampaignSpec& spec, const RowSour
       if (cell.shown_in(decibel)) out.push_back(figure_of(cell, decibel, true));
     }
   }
+  if (auto choices = user_choices_figure(spec, *cells)) out.push_back(std::move(*choices));
   return out;
 }
 
