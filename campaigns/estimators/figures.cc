@@ -91,6 +91,7 @@ StudyFigure figure_of(const CellRuns& cell, const std::string& id, bool decibel)
   const std::string condition = cell.name.empty() ? "linear" : cell.name;
   plot::Panel panel;
   panel.x.label = "f, Hz";
+  panel.x.range = plot::Range{cell.frequency_hz.front() - 0.03, cell.frequency_hz.back() + 0.03};
   panel.y.label = decibel ? "error of the magnitude, dB" : "error of the magnitude, %";
   for (const std::size_t e : kDrawn) decibel ? add_decibel(cell, e, panel) : add_scatter(cell, e, panel);
   if (decibel) {
