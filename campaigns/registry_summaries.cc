@@ -4,13 +4,18 @@
 
 #include "campaigns/conditions/summary.h"
 #include "campaigns/coverage/summary.h"
+#include "campaigns/dynamics_change/summary.h"
 #include "campaigns/estimators/summary.h"
 
 namespace fatmc {
 
 const SummaryStudy* find_summary_study(std::string_view name) {
-  static const std::vector<SummaryStudy> studies = {conditions::kSummaryStudy, coverage::kSummaryStudy,
-                                                    estimators::kSummaryStudy};
+  static const std::vector<SummaryStudy> studies = {
+      coverage::kSummaryStudy,
+      estimators::kSummaryStudy,
+      conditions::kSummaryStudy,
+      dynamics_change::kSummaryStudy,
+  };
   for (const SummaryStudy& study : studies) {
     if (study.name == name) return &study;
   }

@@ -2,13 +2,18 @@
 
 #include "campaigns/conditions/trial.h"
 #include "campaigns/coverage/trial.h"
+#include "campaigns/dynamics_change/trial.h"
 #include "campaigns/estimators/trial.h"
 
 namespace fatmc {
 
 const std::vector<TrialStudy>& trial_studies() {
-  static const std::vector<TrialStudy> studies = {conditions::kTrialStudy, coverage::kTrialStudy,
-                                                  estimators::kTrialStudy};
+  static const std::vector<TrialStudy> studies = {
+      coverage::kTrialStudy,
+      estimators::kTrialStudy,
+      conditions::kTrialStudy,
+      dynamics_change::kTrialStudy,
+  };
   return studies;
 }
 
