@@ -2,12 +2,13 @@
 
 #include <vector>
 
+#include "campaigns/candidates/summary.h"
 #include "campaigns/coverage/summary.h"
 
 namespace fatmc {
 
 const SummaryStudy* find_summary_study(std::string_view name) {
-  static const std::vector<SummaryStudy> studies = {coverage::kSummaryStudy};
+  static const std::vector<SummaryStudy> studies = {coverage::kSummaryStudy, candidates::kSummaryStudy};
   for (const SummaryStudy& study : studies) {
     if (study.name == name) return &study;
   }
