@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "campaigns/candidates/summary.h"
 #include "campaigns/conditions/summary.h"
 #include "campaigns/coverage/summary.h"
 #include "campaigns/dynamics_change/summary.h"
@@ -15,6 +16,7 @@ const SummaryStudy* find_summary_study(std::string_view name) {
       estimators::kSummaryStudy,
       conditions::kSummaryStudy,
       dynamics_change::kSummaryStudy,
+      candidates::kSummaryStudy,
   };
   for (const SummaryStudy& study : studies) {
     if (study.name == name) return &study;

@@ -1,5 +1,6 @@
 #include "campaigns/registry_trials.h"
 
+#include "campaigns/candidates/trial.h"
 #include "campaigns/conditions/trial.h"
 #include "campaigns/coverage/trial.h"
 #include "campaigns/dynamics_change/trial.h"
@@ -13,6 +14,7 @@ const std::vector<TrialStudy>& trial_studies() {
       estimators::kTrialStudy,
       conditions::kTrialStudy,
       dynamics_change::kTrialStudy,
+      candidates::kTrialStudy,
   };
   return studies;
 }
