@@ -34,4 +34,9 @@ const PublishedFigure* find_published(const std::vector<PublishedFigure>& figure
   return nullptr;
 }
 
+bool compared_with_print(const CampaignSpec& spec, std::uint32_t cell) {
+  const Tree* compare = spec.cells.at(cell).tree.find("compare");
+  return compare == nullptr || compare->value != decltype(compare->value)(false);
+}
+
 }  // namespace fatmc

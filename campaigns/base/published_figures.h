@@ -22,4 +22,7 @@ Result<std::vector<PublishedFigure>> decode_published(const CampaignSpec& spec);
 const PublishedFigure* find_published(const std::vector<PublishedFigure>& figures, const std::string& table,
                                       const std::string& row, const std::string& quantity);
 
+/// Whether a cell repeats what is published: `compare` of the cell, true where absent.
+bool compared_with_print(const CampaignSpec& spec, std::uint32_t cell);
+
 }  // namespace fatmc

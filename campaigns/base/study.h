@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "campaigns/base/campaign_spec.h"
+#include "campaigns/base/figure.h"
 #include "campaigns/base/trial_record.h"
 #include "campaigns/base/trial_row.h"
 #include "core/base/error.h"
@@ -49,9 +50,18 @@ struct TableRow {
 /// Reads rows of one cell in the order of repetitions, calling back for each.
 using RowSource = std::function<void(std::uint32_t cell, const std::function<void(const TrialRow&)>& visit)>;
 
+/// A figure of the report.
+struct StudyFigure {
+  std::string id;       ///< "Fig. 5-4", or a short title of our own
+  std::string caption;  ///< what is shown, from how many runs, what the bands are
+  plot::Figure figure;
+};
+
 struct SummaryStudy {
   std::string name;
   Result<std::vector<TableRow>> (*tables)(const CampaignSpec& spec, const RowSource& rows);
+  /// In the order in which the report shows them; null where the study draws nothing.
+  Result<std::vector<StudyFigure>> (*figures)(const CampaignSpec& spec, const RowSource& rows) = nullptr;
 };
 
 }  // namespace fatmc

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "campaigns/base/verdict.h"
 #include "campaigns/coverage/summary.h"
 #include "core/stats/empirical.h"
 #include "core/stats/intervals.h"
@@ -57,32 +58,6 @@ Estimate median(const std::vector<double>& values) {
   return out;
 }
 
-// Share of 50 further runs: Wilson's interval about the share of n runs, for the variance p (1 − p) (1/n + 1/50) that the
-// difference of both shares has.
-Interval predicted_share(double share, double n) {
-  if (n < 2) return {kNone, kNone};
-  const double m = 1.0 / (1.0 / n + 1.0 / kPublishedRepetitions);
-  const double z = 1.959963984540054;
-  const double centre = (share + z * z / (2.0 * m)) / (1.0 + z * z / m);
-  const double half = z / (1.0 + z * z / m) * std::sqrt(share * (1.0 - share) / m + z * z / (4.0 * m * m));
-  return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
-}
-
-// `match` inside the interval; `shape` for a ratio within a factor of two (6 dB) of the published one; else `differs`.
-void judge(TableRow& row) {
-  if (std::isnan(row.low)) {
-    row.why = "one run has no scatter: no interval, no verdict";
-    return;
-  }
-  if (row.published >= row.low && row.published <= row.high) {
-    row.verdict = "match";
-    return;
-  }
-  row.verdict = row.unit == "dB" && std::abs(row.published - row.value) < 6.0 ? "shape" : "differs";
-  row.why = "published " + std::string(row.published > row.value ? "higher" : "lower") +
-            "; aerodynamic derivatives and amplitude of the excitation are not printed";
-}
-
 }  // namespace
 
 void SnrSummary::add(const std::vector<double>& snr_db, std::size_t inputs) {
@@ -95,28 +70,23 @@ void SnrSummary::add_rows(std::uint64_t trials, const std::string& suffix,
   if (runs_.empty()) return;
   const std::size_t lines = runs_.front().size() / inputs_;
   const auto append = [&](std::size_t input, const std::string& quantity, const std::string& unit,
-                          Estimate estimate) {
-    TableRow row;
-    row.table = "Section 5.2.3";
+                          const auto& fill) {
     const std::string name = inputs_ == 3 ? kInputNames[input] : "input " + std::to_string(input + 1);
-    row.row = name + suffix;
-    row.quantity = quantity;
-    row.unit = unit;
-    row.value = estimate.value;
-    row.low = estimate.low;
-    row.high = estimate.high;
+    TableRow row = table_row("Section 5.2.3", name, quantity, unit);
+    row.published = published_value(published, row);
+    row.row += suffix;
+    fill(row);
     row.n = trials;
-    row.published = kNone;
-    if (const PublishedFigure* figure = find_published(published, "Section 5.2.3", name, quantity)) {
-      row.published = figure->value;
-      judge(row);
-    }
+    // alike: a ratio within a factor of two (6 dB)
+    judge(row, row.unit == "dB" && std::abs(row.published - row.value) < 6.0,
+          "published " + std::string(row.published > row.value ? "higher" : "lower") +
+              "; aerodynamic derivatives and amplitude of the excitation are not printed");
     out.push_back(std::move(row));
   };
   for (std::size_t input = 0; input < inputs_; ++input) {
     std::vector<double> minima;
     std::vector<std::vector<double>> by_line(lines);
-    double below = 0.0;
+    std::uint64_t below = 0;
     for (const std::vector<double>& run : runs_) {
       double low = std::numeric_limits<double>::infinity();
       for (std::size_t line = 0; line < lines; ++line) {
@@ -125,21 +95,26 @@ void SnrSummary::add_rows(std::uint64_t trials, const std::string& suffix,
         by_line[line].push_back(snr);
       }
       minima.push_back(low);
-      below += low < 20.0 ? 1.0 : 0.0;
+      below += low < 20.0 ? 1 : 0;
     }
-    append(input, "smallest input SNR", "dB", smallest(minima));
+    const auto filled = [](const Estimate& estimate) {
+      return [estimate](TableRow& row) {
+        row.value = estimate.value;
+        row.low = estimate.low;
+        row.high = estimate.high;
+      };
+    };
+    append(input, "smallest input SNR", "dB", filled(smallest(minima)));
     Estimate low, high;
     for (const std::vector<double>& values : by_line) {
       const Estimate estimate = median(values);
       if (!(estimate.value >= low.value)) low = estimate;
       if (!(estimate.value <= high.value)) high = estimate;
     }
-    append(input, "smallest median", "dB", low);
-    append(input, "largest median", "dB", high);
-    const double share = below / static_cast<double>(runs_.size());
-    const Interval predicted = predicted_share(share, static_cast<double>(runs_.size()));
+    append(input, "smallest median", "dB", filled(low));
+    append(input, "largest median", "dB", filled(high));
     append(input, "runs with a line below 20 dB", "%",
-           {100.0 * share, 100.0 * predicted.low, 100.0 * predicted.high});
+           [&](TableRow& row) { fill_share(row, below, runs_.size(), kPublishedRepetitions); });
   }
 }
 

@@ -2,22 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
-#include "campaigns/base/published_figures.h"
+#include "campaigns/base/verdict.h"
 #include "campaigns/coverage/regions.h"
 #include "campaigns/coverage/row_arrays.h"
 #include "campaigns/coverage/snr_summary.h"
 #include "core/base/check.h"
 #include "core/base/text.h"
 #include "core/stats/confidence.h"
-#include "core/stats/intervals.h"
 
 namespace fatmc::coverage {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 // Abscissae of Fig. 5-4, whose axis ends near 6.
 constexpr std::array kCdfAbscissae = {0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0};
 
@@ -110,39 +107,14 @@ CellCoverage collect(std::uint32_t cell, const RowSource& rows) {
   return out;
 }
 
-// Verdict of a published figure against ours: `match` inside the interval, `shape` where both lie on the same
-// side of the nominal level, `differs` otherwise.
-void judge(TableRow& row, double nominal, const std::string& reason) {
-  if (std::isnan(row.published)) return;
-  if (std::isnan(row.low)) {
-    row.why += (row.why.empty() ? "" : "; ") + std::string("one run has no scatter: no interval, no verdict");
-    return;
-  }
-  if (row.published >= row.low && row.published <= row.high) {
-    row.verdict = "match";
-  } else if ((row.published - nominal) * (row.value - nominal) > 0.0) {
-    row.verdict = "shape";
-    row.why += (row.why.empty() ? "" : "; ") + reason;
-  } else {
-    row.verdict = "differs";
-    row.why += (row.why.empty() ? "" : "; ") + reason;
-  }
-}
-
-TableRow percent_row(const std::vector<double>& shares, std::uint64_t n) {
-  const RunMean mean = mean_over_runs(shares);
-  TableRow row;
-  row.unit = "%";
-  row.value = 100.0 * mean.mean;
-  row.low = row.high = kNone;
-  if (mean.n >= 2) {
-    const Interval interval = prediction_interval(mean, kPublishedRepetitions);
-    row.low = 100.0 * std::max(0.0, interval.low);
-    row.high = 100.0 * std::min(1.0, interval.high);
-  }
-  row.published = kNone;
-  row.n = n;
-  return row;
+TableRow percent_row(const std::string& table, const std::string& row, const std::string& quantity,
+                     const std::vector<double>& shares, std::uint64_t n) {
+  TableRow out = table_row(table, row, quantity, "%");
+  fill_mean(out, shares, kPublishedRepetitions, 100.0);
+  out.low = std::max(0.0, out.low);
+  out.high = std::min(100.0, out.high);
+  out.n = n;
+  return out;
 }
 
 std::string level_text(double level) { return significant(100.0 * level, 4) + " %"; }
@@ -174,10 +146,10 @@ void add_table_5_5(const CellCoverage& cell, const std::string& suffix,
         if (shares == cell.shares.end()) continue;
         // The joint rows of every variant would drown the table: those of the two regions in use suffice.
         if (scope > 0 && region != Region::plain && region != Region::extended) continue;
-        TableRow row = percent_row(shares->second, cell.trials);
-        row.table = "5-5";
-        row.row = level_text(kLevels[level]) + suffix;
-        row.quantity = std::string(region_name(region)) + kScopes[static_cast<std::size_t>(scope)];
+        TableRow row =
+            percent_row("5-5", level_text(kLevels[level]) + suffix,
+                        std::string(region_name(region)) + kScopes[static_cast<std::size_t>(scope)],
+                        shares->second, cell.trials);
         const bool extended = region != Region::plain && region != Region::sample;
         if (scope == 0 && region != Region::plain) {
           const PublishedFigure* figure = find_published(published, "5-5", level_text(kLevels[level]),
@@ -186,7 +158,7 @@ void add_table_5_5(const CellCoverage& cell, const std::string& suffix,
         }
         if (cell.failed > 0)
           row.why = std::to_string(cell.failed) + " trials without an estimate count as outside";
-        judge(row, 100.0 * kLevels[level], reason_for(region));
+        judge_by_side(row, 100.0 * kLevels[level], reason_for(region));
         out.push_back(std::move(row));
       }
     }
@@ -198,19 +170,12 @@ void add_figure_5_4(const CellCoverage& cell, const std::string& suffix, int q, 
     for (const Region region : kRegions) {
       const auto shares = cell.cdf.find({region, x});
       if (shares == cell.cdf.end()) continue;
-      TableRow row = percent_row(shares->second, cell.trials);
-      row.table = "Fig. 5-4";
-      row.row = "x = " + significant(kCdfAbscissae[x], 3) + suffix;
-      row.quantity = std::string(region_name(region));
-      out.push_back(std::move(row));
+      out.push_back(percent_row("Fig. 5-4", "x = " + significant(kCdfAbscissae[x], 3) + suffix,
+                                std::string(region_name(region)), shares->second, cell.trials));
     }
-    TableRow law;
-    law.table = "Fig. 5-4";
-    law.row = "x = " + significant(kCdfAbscissae[x], 3) + suffix;
-    law.quantity = "F(2, " + std::to_string(2 * q) + ")";
-    law.unit = "%";
+    TableRow law = table_row("Fig. 5-4", "x = " + significant(kCdfAbscissae[x], 3) + suffix,
+                             "F(2, " + std::to_string(2 * q) + ")", "%");
     law.value = 100.0 * f_cdf_2_2q(kCdfAbscissae[x], q);
-    law.published = law.low = law.high = kNone;
     out.push_back(std::move(law));
   }
 }
@@ -229,10 +194,8 @@ Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& 
     rows(index, [&](const TrialRow& row) {
       if (row.outcome == "ok" && q == 0) q = static_cast<int>(metric(row, kDegreesOfFreedom));
     });
-    // A cell that varies the published experiment says so by compare = false.
-    const Tree* compare = spec.cells[index].tree.find("compare");
-    const bool compared = compare == nullptr || compare->value != decltype(compare->value)(false);
-    const std::vector<PublishedFigure> figures = compared ? *published : std::vector<PublishedFigure>{};
+    const std::vector<PublishedFigure> figures =
+        compared_with_print(spec, index) ? *published : std::vector<PublishedFigure>{};
     add_table_5_5(cell, suffix, figures, table_5_5);
     add_figure_5_4(cell, suffix, q, figure_5_4);
     cell.snr.add_rows(cell.trials - cell.failed, suffix, figures, snr);

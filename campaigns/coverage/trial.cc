@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <optional>
 
-#include "campaigns/base/experiment.h"
-#include "campaigns/coverage/coverage_cell.h"
 #include "campaigns/coverage/row_arrays.h"
-#include "core/ident/fast_lpm.h"
+#include "campaigns/flown/flown_flights.h"
 #include "core/ident/interpolation_bias.h"
 #include "core/stats/confidence.h"
 
@@ -18,87 +15,35 @@ namespace {
 
 constexpr int kAxes = 3;
 constexpr const char* kInputSuffix[] = {"xi_c", "eta_c", "zeta_c"};
-constexpr const char* kServoSuffix[] = {"aileron", "left_ruddervator", "right_ruddervator"};
-
-// Workspace of one trial; large enough to be worth keeping from trial to trial.
-struct Workspace {
-  explicit Workspace(const LpmGrid& grid) : estimator(grid, kAxes) {}
-  FlightRecord record;
-  FastLpm estimator;
-};
 
 class CoverageTrials final : public PreparedCell {
  public:
-  CoverageTrials(CoverageCell cell, Flight flight, LpmGrid grid, TrialSeed seed, TrialKey key)
-      : cell_(std::move(cell)), flight_(std::move(flight)), grid_(std::move(grid)), seed_(seed), key_(key) {
-    for (int k = 0; k < grid_.line_count(); ++k)
-      truth_.push_back(flight_.sampled().response(grid_.frequency_hz(k)));
-  }
+  explicit CoverageTrials(std::unique_ptr<const FlownFlights> flights) : flights_(std::move(flights)) {}
 
   TrialRow run(std::uint64_t repetition) const override {
     TrialRow row;
-    row.key = {key_.cell, repetition};
-    TrialSeed seed = seed_;
-    seed.repetition = repetition;
-    std::unique_ptr<Workspace> workspace = take_workspace();
-    FlightRecord& record = workspace->record;
-    flight_.fly(reference_signal(cell_.experiment, seed), seed, record);
-    if (record.ending == Ending::completed) {
-      estimate(*workspace, row);
-    } else {
-      row.outcome = "diverged";
-      row.detail = std::string(name(record.ending)) + " at " + std::to_string(record.ending_time_s) + " s";
-    }
-    describe_flight(record, row);
-    give_back(std::move(workspace));
+    row.key = flights_->key(repetition);
+    const FlownFlights::Lease workspace = flights_->borrow();
+    if (flights_->fly(repetition, *workspace, row)) estimate(*workspace, row);
+    FlownFlights::describe(workspace->record, row);
     return row;
   }
 
   std::optional<TrialRecord> record(std::uint64_t repetition) const override {
-    TrialSeed seed = seed_;
-    seed.repetition = repetition;
-    std::unique_ptr<Workspace> workspace = take_workspace();
-    flight_.fly(reference_signal(cell_.experiment, seed), seed, workspace->record);
-    TrialRecord out = trial_record(workspace->record, cell_.experiment, flight_.aircraft());
-    give_back(std::move(workspace));
-    return out;
+    return flights_->record(repetition);
   }
 
  private:
-  // Trials of one cell run in several threads at once; each takes a workspace that no other has.
-  std::unique_ptr<Workspace> take_workspace() const {
-    const std::lock_guard lock(mutex_);
-    if (idle_.empty()) return std::make_unique<Workspace>(grid_);
-    std::unique_ptr<Workspace> out = std::move(idle_.back());
-    idle_.pop_back();
-    return out;
-  }
-  void give_back(std::unique_ptr<Workspace> workspace) const {
-    const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(workspace));
-  }
-
-  void estimate(Workspace& workspace, TrialRow& row) const {
-    const FlightRecord& record = workspace.record;
-    workspace.estimator.load(record.output, record.input);
-    FrmEstimate frm = workspace.estimator.indirect(spectra_at_lines(grid_, record.reference));
-    for (const LineStatus status : frm.status) {
-      if (status == LineStatus::ok) continue;
-      row.outcome = "singular";
-      row.detail = status == LineStatus::singular_input ? "G_ur has no inverse"
-                                                        : "the references do not span all inputs";
-      return;
-    }
-    const double mean_speed = record.auxiliary.col(2).mean();
-    // (3.4): the response grows with airspeed; refer it to the trim speed.
-    if (cell_.speed_correction) scale_response(frm, flight_.aircraft().speed_m_s / mean_speed);
-    const MatrixStack<double> bias = interpolation_bias(grid_, frm, BiasConstant::exact_offsets);
+  void estimate(FlownFlights::Workspace& workspace, TrialRow& row) const {
+    const FrmEstimate* frm = flights_->estimate(workspace, row);
+    if (frm == nullptr) return;
+    const MatrixStack<double> bias = interpolation_bias(flights_->grid(), *frm, BiasConstant::exact_offsets);
     std::optional<MatrixStack<double>> printed;  // print has constants for the orders 2, 4 and 6
-    if (printed_bias_constant(cell_.estimator.order)) {
-      printed = interpolation_bias(grid_, frm, BiasConstant::printed);
+    if (printed_bias_constant(flights_->cell().estimator.order)) {
+      printed = interpolation_bias(flights_->grid(), *frm, BiasConstant::printed);
     }
-    store(frm, bias, printed, row);
-    row.metrics.emplace_back("mean_speed_m_s", mean_speed);
+    store(*frm, bias, printed, row);
+    row.metrics.emplace_back("mean_speed_m_s", workspace.record.auxiliary.col(2).mean());
   }
 
   void store(const FrmEstimate& frm, const MatrixStack<double>& bias,
@@ -109,7 +54,8 @@ class CoverageTrials final : public PreparedCell {
     for (int k = 0; k < frm.line_count(); ++k) {
       for (int i = 0; i < kAxes; ++i) {
         for (int j = 0; j < kAxes; ++j) {
-          const std::complex<double> error = frm.G[k](i, j) - truth_[static_cast<std::size_t>(k)](i, j);
+          const std::complex<double> error =
+              frm.G[k](i, j) - flights_->truth()[static_cast<std::size_t>(k)](i, j);
           re.push_back(error.real());
           im.push_back(error.imag());
           variance.push_back(frm.variance(k, i, j));
@@ -144,56 +90,15 @@ class CoverageTrials final : public PreparedCell {
     row.arrays.emplace_back(kInputSnr, std::move(snr));
   }
 
-  void describe_flight(const FlightRecord& record, TrialRow& row) const {
-    for (int axis = 0; axis < kAxes; ++axis) {
-      row.metrics.emplace_back(std::string("input_rms_") + kInputSuffix[axis], record.input_rms(axis));
-      row.metrics.emplace_back(std::string("share_at_position_limit_") + kServoSuffix[axis],
-                               record.at_position_limit(axis));
-      row.metrics.emplace_back(std::string("share_at_rate_limit_") + kServoSuffix[axis],
-                               record.at_rate_limit(axis));
-    }
-    const auto flown = record.auxiliary.topRows(record.samples);
-    if (record.samples > 0) {
-      row.metrics.emplace_back("largest_bank_rad", flown.col(0).cwiseAbs().maxCoeff());
-      row.metrics.emplace_back("largest_pitch_rad", flown.col(1).cwiseAbs().maxCoeff());
-    }
-  }
-
-  CoverageCell cell_;
-  Flight flight_;
-  LpmGrid grid_;
-  TrialSeed seed_;
-  TrialKey key_;
-  std::vector<Eigen::Matrix3cd> truth_;  // G0 at the lines
-  mutable std::mutex mutex_;
-  mutable std::vector<std::unique_ptr<Workspace>> idle_;
+  std::unique_ptr<const FlownFlights> flights_;
 };
 
 Result<std::unique_ptr<PreparedCell>> prepare(const CampaignSpec& spec, std::uint32_t index) {
-  auto cell = decode_cell(spec, index);
+  auto cell = decode_flown_cell(spec, index);
   if (!cell) return fail(cell.error());
-  const auto place = [&](const char* key, const Error& error) {
-    const Tree* table = spec.tree.find(key);
-    return table != nullptr ? Error{table->file, table->line, key, error.message} : error;
-  };
-  auto flight = Flight::prepare(cell->aircraft, cell->experiment.flight);
-  if (!flight) {
-    Error error =
-        locate_flight_error(flight.error(), *spec.tree.find("model"), *spec.tree.find("experiment"));
-    // The cell may have put another value in the experiment's place.
-    const std::string key = error.key.substr(error.key.rfind('.') + 1);
-    if (const Tree* own = spec.cells.at(index).tree.find(key))
-      error = {own->file, own->line, "cell." + key, error.message};
-    return fail(std::move(error));
-  }
-  const Excitation& excitation = cell->experiment.excitation;
-  auto grid = LpmGrid::create(
-      {excitation.lines, excitation.period_samples, excitation.periods, cell->experiment.flight.rate_hz},
-      cell->estimator, kAxes);
-  if (!grid) return fail(place("estimator", grid.error()));
-  const TrialKey key{index, 0};
-  return std::make_unique<CoverageTrials>(std::move(*cell), std::move(*flight), std::move(*grid),
-                                          spec.trial_seed(key), key);
+  auto flights = FlownFlights::prepare(spec, index, std::move(*cell));
+  if (!flights) return fail(flights.error());
+  return std::make_unique<CoverageTrials>(std::move(*flights));
 }
 
 }  // namespace

@@ -36,6 +36,7 @@ void add_digest_command(CLI::App& app, Exit& exit);
 void add_merge_command(CLI::App& app, Exit& exit);
 void add_migrate_command(CLI::App& app, Exit& exit);
 void add_tables_command(CLI::App& app, Exit& exit);
+void add_report_command(CLI::App& app, Exit& exit);
 void add_replay_command(CLI::App& app, Exit& exit);
 void add_pause_command(CLI::App& app, Exit& exit);
 void add_resume_command(CLI::App& app, Exit& exit);

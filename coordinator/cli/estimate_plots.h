@@ -7,7 +7,7 @@
 
 #include "coordinator/cli/estimate_record.h"
 #include "coordinator/cli/reference_response.h"
-#include "coordinator/plot/figure.h"
+#include "campaigns/base/figure.h"
 
 namespace fatmc::cli {
 

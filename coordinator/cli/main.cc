@@ -18,6 +18,7 @@ int run(int argc, char** argv) {
   add_merge_command(app, exit);
   add_migrate_command(app, exit);
   add_tables_command(app, exit);
+  add_report_command(app, exit);
   add_replay_command(app, exit);
   add_pause_command(app, exit);
   add_resume_command(app, exit);

@@ -70,6 +70,19 @@ struct Spanned {
     extent.add(vertical ? m.low : m.x);
     if (vertical) extent.add(m.high);
   }
+  void operator()(const Boxes& m) const {
+    for (const double x : m.x) {
+      if (vertical) break;
+      extent.add(m.low_edge(x));
+      extent.add(m.high_edge(x));
+    }
+    for (const Boxes::Box& box : m.boxes) {
+      if (!vertical) break;
+      extent.add(box.low_whisker);
+      extent.add(box.high_whisker);
+      extent.add(box.outliers);
+    }
+  }
   void operator()(const Bars& m) const {
     extent.add(vertical ? m.heights : m.edges);
     if (vertical) extent.add(0.0);

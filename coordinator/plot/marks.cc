@@ -100,7 +100,7 @@ struct Drawing {
       for (const Pixel& p : run) {
         out += "<circle class=\"" + (m.filled ? class_of("f", m.hue) : "ring " + class_of("s", m.hue)) +
                "\" cx=\"" + px(limited(p.x)) + "\" cy=\"" + px(limited(p.y)) + "\" r=\"" +
-               (m.filled ? "2" : "3") + "\"/>\n";
+               px(m.filled ? m.radius_px : m.radius_px + 1.0) + "\"/>\n";
       }
     }
     return out;
@@ -118,6 +118,30 @@ struct Drawing {
              px(std::abs(limited(top) - limited(base))) + "\"/>\n";
     }
     return out;
+  }
+  std::string operator()(const Boxes& m) const {
+    FATMC_CHECK(m.x.size() == m.boxes.size(), "a box an abscissa");
+    std::string lines, out;
+    for (std::size_t k = 0; k < m.x.size(); ++k) {
+      const Boxes::Box& box = m.boxes[k];
+      const double left = x.pixel(m.low_edge(m.x[k])), right = x.pixel(m.high_edge(m.x[k]));
+      const double middle = x.pixel(m.x[k]);
+      const double bottom = y.pixel(box.lower_quartile), top = y.pixel(box.upper_quartile);
+      if (!std::isfinite(left + right + bottom + top)) continue;
+      out += "<rect class=\"bar " + class_of("f", m.hue) + "\" x=\"" + px(limited(left)) + "\" y=\"" +
+             px(limited(top)) + "\" width=\"" + px(limited(right) - limited(left)) + "\" height=\"" +
+             px(std::max(limited(bottom) - limited(top), 0.5)) + "\"/>\n";
+      const double median = y.pixel(box.median);
+      lines += path_of({{left, median}, {right, median}});
+      for (const auto& [from, to] :
+           {std::pair{bottom, y.pixel(box.low_whisker)}, std::pair{top, y.pixel(box.high_whisker)}}) {
+        if (std::isfinite(to) && std::abs(to - from) > 0.05) lines += path_of({{middle, from}, {middle, to}});
+      }
+      out += (*this)(
+          Points{"", std::vector<double>(box.outliers.size(), m.x[k]), box.outliers, m.hue, true, 1.0});
+    }
+    if (lines.empty()) return out;
+    return out + "<path class=\"thin " + class_of("s", m.hue) + "\" d=\"" + lines + "\"/>\n";
   }
   std::string operator()(const Rule& m) const {
     const double at = m.vertical ? x.pixel(m.at) : y.pixel(m.at);
@@ -148,6 +172,7 @@ struct Sample {
   }
   std::string operator()(const Band& m) const { return box("band ", m.hue); }
   std::string operator()(const Bars& m) const { return box("bar ", m.hue); }
+  std::string operator()(const Boxes& m) const { return box("bar ", m.hue); }
   std::string operator()(const Points& m) const {
     return "<circle class=\"" + (m.filled ? class_of("f", m.hue) : "ring " + class_of("s", m.hue)) +
            "\" cx=\"" + px(x + 9.0) + "\" cy=\"" + px(y) + "\" r=\"3\"/>";

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "coordinator/plot/axis_scale.h"
-#include "coordinator/plot/figure.h"
+#include "campaigns/base/figure.h"
 
 namespace fatmc::plot {
 

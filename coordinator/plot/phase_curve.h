@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "coordinator/plot/figure.h"
+#include "campaigns/base/figure.h"
 
 namespace fatmc::plot {
 

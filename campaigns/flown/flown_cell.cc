@@ -1,16 +1,17 @@
-#include "campaigns/coverage/coverage_cell.h"
+#include "campaigns/flown/flown_cell.h"
 
 #include <algorithm>
 
 #include "campaigns/base/aircraft_model.h"
 #include "campaigns/base/decoder.h"
 
-namespace fatmc::coverage {
+namespace fatmc {
 namespace {
 
-Status apply_overrides(const Tree& tree, Experiment& experiment) {
+Status apply_overrides(const Tree& tree, std::span<const char* const> own_keys, Experiment& experiment) {
   Decoder table(tree, "cell");
   for (const char* key : {"name", "repetitions"}) table.skip(key);
+  for (const char* key : own_keys) table.skip(key);
   table.boolean("compare", true);  // read by the summary
   FlightSetup& flight = experiment.flight;
   if (table.has("plant")) {
@@ -31,7 +32,7 @@ Status apply_overrides(const Tree& tree, Experiment& experiment) {
   return other_lines ? resolve_excitation(experiment.excitation, flight.rate_hz, tree) : Status{};
 }
 
-Status decode_estimator(const Tree& tree, CoverageCell& out) {
+Status decode_estimator(const Tree& tree, FlownCell& out) {
   Decoder table(tree, "estimator");
   out.estimator.n_e = static_cast<int>(table.integer("n_e", {.low = 1, .high = 1000}, out.estimator.n_e));
   out.estimator.order = static_cast<int>(table.integer("order", {.low = 0, .high = 10}, out.estimator.order));
@@ -43,22 +44,25 @@ Status decode_estimator(const Tree& tree, CoverageCell& out) {
 
 }  // namespace
 
-Result<CoverageCell> decode_cell(const CampaignSpec& spec, std::uint32_t cell) {
+Result<FlownCell> decode_flown_cell(const CampaignSpec& spec, std::uint32_t cell,
+                                    std::span<const char* const> own_tables,
+                                    std::span<const char* const> own_keys) {
   Decoder top(spec.tree, "");
   for (const char* key : {"campaign", "cell", "published"}) top.skip(key);
+  for (const char* key : own_tables) top.skip(key);
   const Tree* model = top.table("model");
   const Tree* experiment = top.table("experiment");
   const Tree* estimator = top.table("estimator", false);
   if (Status status = top.finish(); !status) return fail(status.error());
 
-  CoverageCell out;
+  FlownCell out;
   auto aircraft = decode_aircraft_model(*model);
   if (!aircraft) return fail(aircraft.error());
   out.aircraft = aircraft->aircraft;
   auto decoded = decode_experiment(*experiment, *aircraft);
   if (!decoded) return fail(decoded.error());
   out.experiment = std::move(*decoded);
-  if (Status status = apply_overrides(spec.cells.at(cell).tree, out.experiment); !status)
+  if (Status status = apply_overrides(spec.cells.at(cell).tree, own_keys, out.experiment); !status)
     return fail(status.error());
   if (estimator != nullptr) {
     if (Status status = decode_estimator(*estimator, out); !status) return fail(status.error());
@@ -66,4 +70,4 @@ Result<CoverageCell> decode_cell(const CampaignSpec& spec, std::uint32_t cell) {
   return out;
 }
 
-}  // namespace fatmc::coverage
+}  // namespace fatmc

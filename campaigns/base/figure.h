@@ -1,7 +1,8 @@
 // What a figure shows, apart from how it is drawn: a grid of panels, each with two axes and marks in the
 // data's units.
 //
-// svg.h draws it. A new kind of mark is a struct here, a member of Mark, and a function in marks.cc.
+// Studies fill it; coordinator/plot/svg.h draws it. A new kind of mark is a struct here, a member of Mark, and a function
+// in coordinator/plot/marks.cc.
 #pragma once
 
 #include <optional>
@@ -53,6 +54,7 @@ struct Points {
   std::vector<double> x, y;
   Hue hue = Hue::blue;
   bool filled = true;
+  double radius_px = 2.0;  ///< a ring is 1 px larger
 };
 
 /// A histogram: bar i stands on edges[i] ... edges[i + 1], from zero (or the axis' end) to heights[i].
@@ -61,6 +63,32 @@ struct Bars {
   std::vector<double> edges, heights;
   Hue hue = Hue::blue;
 };
+
+/// Box plots: box i stands at x[i], from lower to upper quartile with a bar at the median, whiskers to the farthest values
+/// within 1.5 interquartile ranges of the box, dots beyond. It is `width` of the axis' unit wide, or reaches from
+/// x/(1 + width/2) to x (1 + width/2) where `relative`: equally wide on a logarithmic axis.
+struct Boxes {
+  struct Box {
+    double low_whisker, lower_quartile, median, upper_quartile, high_whisker;
+    std::vector<double> outliers;
+  };
+  std::string name;
+  std::vector<double> x;
+  std::vector<Box> boxes;
+  double width = 1.0;
+  bool relative = false;
+  Hue hue = Hue::blue;
+
+  [[nodiscard]] double low_edge(double at) const {
+    return relative ? at / (1.0 + width / 2.0) : at - width / 2.0;
+  }
+  [[nodiscard]] double high_edge(double at) const {
+    return relative ? at * (1.0 + width / 2.0) : at + width / 2.0;
+  }
+};
+
+/// The box of a sample; values that are not finite are left out. None where nothing is left.
+std::optional<Boxes::Box> box_of(std::vector<double> values);
 
 /// A straight line through the panel at one value of an axis; it does not widen the axis.
 struct Rule {
@@ -71,7 +99,7 @@ struct Rule {
   Dash dash = Dash::dashed;
 };
 
-using Mark = std::variant<Line, Band, Points, Bars, Rule>;
+using Mark = std::variant<Line, Band, Points, Bars, Boxes, Rule>;
 
 struct Panel {
   std::string title;

@@ -1,0 +1,48 @@
+// A row of `fatmc tables`, filled and judged: the same rules for every study.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "campaigns/base/published_figures.h"
+#include "campaigns/base/study.h"
+#include "core/stats/bootstrap.h"
+
+namespace fatmc {
+
+/// A row without numbers: NaN for published, value and interval.
+TableRow table_row(std::string table, std::string row, std::string quantity, std::string unit);
+
+/// The published figure of that table, row and quantity, or NaN.
+double published_value(const std::vector<PublishedFigure>& figures, const TableRow& row);
+
+/// Value and 95 % prediction interval of the mean over runs, for a campaign of `published_runs`, times `unit_factor` (100
+/// for shares given in %). One value a run; NaNs are left out. n = values given.
+void fill_mean(TableRow& row, std::span<const double> runs, std::uint64_t published_runs,
+               double unit_factor = 1.0);
+
+/// Value and 95 % prediction interval of any statistic of `runs` runs, by bootstrap over runs.
+void fill_statistic(TableRow& row, std::size_t runs, std::size_t published_runs,
+                    const RunStatistic& statistic);
+
+/// Share of runs with a property, in %: Wilson's interval for the difference of `hits` of `runs` from a share of
+/// `published_runs`, variance p (1 - p) (1/n + 1/m).
+void fill_share(TableRow& row, std::uint64_t hits, std::uint64_t runs, std::uint64_t published_runs);
+
+/// Verdict where something is printed: `match` inside [low, high]; else `shape` if `alike`, or `differs`, with `reason`
+/// appended to row.why. No interval: no verdict, and why says so.
+void judge(TableRow& row, bool alike, std::string_view reason);
+
+/// `alike` = same sign and order of magnitude: |log10(value / published)| <= 1/2; published 0: never.
+void judge_by_order(TableRow& row, std::string_view reason);
+
+/// `alike` = both on the same side of a nominal value (75 % of a nominal 75 % region).
+void judge_by_side(TableRow& row, double nominal, std::string_view reason);
+
+/// `exact` for a figure without scatter whose value rounds to the printed digits (`last_digit`: 0.01 for two decimals);
+/// else as judge_by_order without an interval.
+void judge_exact(TableRow& row, double last_digit, std::string_view reason);
+
+}  // namespace fatmc
