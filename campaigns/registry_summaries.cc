@@ -3,11 +3,12 @@
 #include <vector>
 
 #include "campaigns/coverage/summary.h"
+#include "campaigns/hidden_effect/summary.h"
 
 namespace fatmc {
 
 const SummaryStudy* find_summary_study(std::string_view name) {
-  static const std::vector<SummaryStudy> studies = {coverage::kSummaryStudy};
+  static const std::vector<SummaryStudy> studies = {coverage::kSummaryStudy, hidden_effect::kSummaryStudy};
   for (const SummaryStudy& study : studies) {
     if (study.name == name) return &study;
   }

@@ -1,11 +1,12 @@
 #include "campaigns/registry_trials.h"
 
 #include "campaigns/coverage/trial.h"
+#include "campaigns/hidden_effect/trial.h"
 
 namespace fatmc {
 
 const std::vector<TrialStudy>& trial_studies() {
-  static const std::vector<TrialStudy> studies = {coverage::kTrialStudy};
+  static const std::vector<TrialStudy> studies = {coverage::kTrialStudy, hidden_effect::kTrialStudy};
   return studies;
 }
 

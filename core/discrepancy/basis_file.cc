@@ -95,8 +95,9 @@ std::string basis_text(const ComparisonBasis& basis, const std::string& key) {
   return text;
 }
 
-std::optional<ComparisonBasis> parse_basis(const std::string& text, const std::string& key, const FeatureLayout& layout,
-                                           const LpmGrid& grid, const BasisOptions& options) {
+std::optional<ComparisonBasis> parse_basis(const std::string& text, const std::string& key,
+                                           const FeatureLayout& layout, const LpmGrid& grid,
+                                           const BasisOptions& options) {
   std::string_view rest = text;
   std::uint64_t sum = 0;
   const std::string head = std::string(kTitle) + key + "\n";
@@ -121,7 +122,8 @@ std::optional<ComparisonBasis> parse_basis(const std::string& text, const std::s
   const bool fits = reader.done() && out.law.mean.size() == layout.size && factor.rows() == layout.size &&
                     out.dictionary.differences.cols() == atoms && out.null.score.cols() == atoms &&
                     out.null.group_mean.size() == static_cast<Eigen::Index>(out.groups.size()) &&
-                    out.baseline.cols() == ComparisonBasis::kBaseline && out.map.mean().size() == 9 * grid.line_count();
+                    out.baseline.cols() == ComparisonBasis::kBaseline &&
+                    out.map.mean().size() == 9 * grid.line_count();
   if (!fits) return std::nullopt;
   out.law.covariance = LowRankCovariance(std::move(factor));
   out.atoms = out.law.whiten(layout, out.dictionary.differences);

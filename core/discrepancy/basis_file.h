@@ -16,7 +16,8 @@ namespace fatmc {
 std::string basis_text(const ComparisonBasis& basis, const std::string& key);
 
 /// None where the text is not whole, is of another key or of other options.
-std::optional<ComparisonBasis> parse_basis(const std::string& text, const std::string& key, const FeatureLayout& layout,
-                                           const LpmGrid& grid, const BasisOptions& options);
+std::optional<ComparisonBasis> parse_basis(const std::string& text, const std::string& key,
+                                           const FeatureLayout& layout, const LpmGrid& grid,
+                                           const BasisOptions& options);
 
 }  // namespace fatmc

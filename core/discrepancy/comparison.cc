@@ -15,11 +15,14 @@ using Vector = Eigen::VectorXd;
 
 constexpr int kHeldBack = 5;  // every fifth line
 
-bool held_out(const FeatureBlock& block) { return block.kind == FeatureKind::line && block.line % kHeldBack == 2; }
+bool held_out(const FeatureBlock& block) {
+  return block.kind == FeatureKind::line && block.line % kHeldBack == 2;
+}
 
 /// Flights of the records combined: the n-th of each, which are independent where the references differ. Records that share
 /// a reference share a basis and its flights; they are shifted against each other.
-Thresholds combine(const std::vector<ComparedRecord>& records, const Matrix& atoms, const std::vector<Eigen::Index>& first) {
+Thresholds combine(const std::vector<ComparedRecord>& records, const Matrix& atoms,
+                   const std::vector<Eigen::Index>& first) {
   Eigen::Index flights = std::numeric_limits<Eigen::Index>::max();
   for (const ComparedRecord& r : records) flights = std::min(flights, r.basis->null.energy.size());
   Vector energy = Vector::Zero(flights), local = Vector::Constant(flights, -1e300);
@@ -73,7 +76,8 @@ Comparison::Comparison(std::vector<ComparedRecord> records, int threads)
   FATMC_CHECK(!records_.empty(), "a record");
   Eigen::Index size = 0;
   for (const ComparedRecord& r : records_) {
-    FATMC_CHECK(r.basis->dictionary.atoms.size() == dictionary().atoms.size(), "one dictionary for all records");
+    FATMC_CHECK(r.basis->dictionary.atoms.size() == dictionary().atoms.size(),
+                "one dictionary for all records");
     first_.push_back(size);
     size += r.basis->layout.size;
   }
@@ -104,7 +108,8 @@ Matrix Comparison::changes(std::span<const std::vector<Effect>> sets, int flight
     out.middleRows(first_[i], basis.layout.size) = basis.law.whiten(basis.layout, difference);
   }
   for (std::size_t s = 0; s < sets.size(); ++s) {
-    if (failed[s]) out.col(static_cast<Eigen::Index>(s)).setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (failed[s])
+      out.col(static_cast<Eigen::Index>(s)).setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   return out;
 }

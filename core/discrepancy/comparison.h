@@ -22,9 +22,9 @@ struct ComparedRecord {
 /// right. Together below 1 %.
 struct Thresholds {
   static constexpr double kScanShare = 0.004, kEnergyShare = 0.002, kLocalShare = 0.002;
-  double scan = 0.0;    ///< of the largest generalised likelihood ratio over all signatures
-  double energy = 0.0;  ///< of z^T z
-  double local = 0.0;   ///< of the largest group score
+  double scan = 0.0;         ///< of the largest generalised likelihood ratio over all signatures
+  double energy = 0.0;       ///< of z^T z
+  double local = 0.0;        ///< of the largest group score
   double energy_mean = 0.0;  ///< mean of z^T z: the noise floor
 };
 
@@ -58,7 +58,8 @@ class Comparison {
   [[nodiscard]] double local_score(const Eigen::Ref<const Eigen::VectorXd>& z) const;
   [[nodiscard]] double local_score(const Eigen::Ref<const Eigen::VectorXd>& z, const ResidualLaw& law) const;
   /// From `flights` flights of the model with these effects; none where one of them fails.
-  [[nodiscard]] std::optional<ResidualLaw> residual_law(const std::vector<Effect>& effects, int flights) const;
+  [[nodiscard]] std::optional<ResidualLaw> residual_law(const std::vector<Effect>& effects,
+                                                        int flights) const;
   /// Rows that are held back where no record is: every fifth line.
   [[nodiscard]] std::vector<int> held_out_rows() const;
   [[nodiscard]] std::vector<int> training_rows() const;

@@ -61,7 +61,8 @@ Result<NullFlights> fly_null(const ModelSimulator& model, const LpmGrid& grid, c
 }
 
 /// Every flight judged by the law of the other folds.
-NullStatistics cross_validate(const ComparisonBasis& basis, const Matrix& features, const Matrix& uncertainty) {
+NullStatistics cross_validate(const ComparisonBasis& basis, const Matrix& features,
+                              const Matrix& uncertainty) {
   const Eigen::Index flights = features.rows();
   const auto atoms = basis.dictionary.differences.cols();
   NullStatistics out;
@@ -73,7 +74,8 @@ NullStatistics cross_validate(const ComparisonBasis& basis, const Matrix& featur
     for (int n = 0; n < flights; ++n) (n % ComparisonBasis::kFolds == fold ? judged : seen).push_back(n);
     NullLaw law = NullLaw::fit(basis.layout, features(seen, Eigen::all));
     law.add_uncertainty(basis.layout, uncertainty);
-    const Matrix z = law.whiten(basis.layout, (features(judged, Eigen::all).rowwise() - law.mean.transpose()).transpose());
+    const Matrix z =
+        law.whiten(basis.layout, (features(judged, Eigen::all).rowwise() - law.mean.transpose()).transpose());
     const Matrix a = law.whiten(basis.layout, basis.dictionary.differences);
     const Vector norm = a.colwise().norm().transpose();
     const Matrix products = z.transpose() * a;
@@ -136,7 +138,8 @@ std::vector<FeatureGroup> feature_groups(const FeatureLayout& layout) {
   for (const FeatureBlock& block : layout.blocks) {
     if (block.kind == FeatureKind::line) continue;
     for (std::size_t i = 0; i < block.channels.size(); ++i) {
-      out.push_back({block.kind, block.channels[i], block.low_hz, block.high_hz, {block.first + static_cast<int>(i)}});
+      out.push_back(
+          {block.kind, block.channels[i], block.low_hz, block.high_hz, {block.first + static_cast<int>(i)}});
     }
   }
   return out;

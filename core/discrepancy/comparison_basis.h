@@ -37,15 +37,17 @@ struct FeatureGroup {
 };
 std::vector<FeatureGroup> feature_groups(const FeatureLayout& layout);
 /// Sum of squares of a white vector over every group.
-Eigen::VectorXd group_sums(const std::vector<FeatureGroup>& groups, const Eigen::Ref<const Eigen::VectorXd>& z);
+Eigen::VectorXd group_sums(const std::vector<FeatureGroup>& groups,
+                           const Eigen::Ref<const Eigen::VectorXd>& z);
 /// Deviation of every group's sum over flights (rows), not below that of a square of unit variance, 2^(1/2): features with
 /// a floor hardly scatter.
-Eigen::VectorXd floored_deviation(const Eigen::Ref<const Eigen::MatrixXd>& sums, const Eigen::Ref<const Eigen::VectorXd>& mean);
+Eigen::VectorXd floored_deviation(const Eigen::Ref<const Eigen::MatrixXd>& sums,
+                                  const Eigen::Ref<const Eigen::VectorXd>& mean);
 
 /// Statistics of white vectors judged by laws that they did not shape.
 struct NullStatistics {
-  Eigen::MatrixXd score;        ///< flights x atoms: a^T z / |a|; zero for signatures that vanish
-  Eigen::VectorXd energy;       ///< z^T z
+  Eigen::MatrixXd score;   ///< flights x atoms: a^T z / |a|; zero for signatures that vanish
+  Eigen::VectorXd energy;  ///< z^T z
   Eigen::VectorXd group_mean, group_deviation;  ///< of every group's sum of squares
   Eigen::VectorXd group_score;  ///< a flight: largest (sum - mean) / deviation over the groups
 };
@@ -58,13 +60,13 @@ struct ComparisonBasis {
   NullLaw law;
   Eigen::MatrixXd baseline;  ///< features of the model's flights 0 ... kBaseline-1, a column each
   Dictionary dictionary;
-  Eigen::MatrixXd atoms;     ///< signatures, whitened by the law
+  Eigen::MatrixXd atoms;  ///< signatures, whitened by the law
   NullStatistics null;
   ResponseMap map;
 
   /// `progress` counts flights over all stages.
-  static Result<ComparisonBasis> make(const ModelSimulator& model, const LpmGrid& grid, const BasisOptions& options,
-                                      const FlightProgress& progress = {});
+  static Result<ComparisonBasis> make(const ModelSimulator& model, const LpmGrid& grid,
+                                      const BasisOptions& options, const FlightProgress& progress = {});
 };
 
 }  // namespace fatmc

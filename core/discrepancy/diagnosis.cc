@@ -5,6 +5,7 @@
 
 #include "core/discrepancy/effect_knowledge.h"
 #include "core/discrepancy/effect_selection.h"
+#include "core/discrepancy/effect_size.h"
 
 namespace fatmc {
 namespace {
@@ -22,13 +23,11 @@ std::vector<FoundEffect> found_effects(const EffectSelection& selection, const E
     const auto at = static_cast<Eigen::Index>(i);
     const double t = natural_value(fit.effects, free[i]);
     const double half = 1.959963984540054 * std::sqrt(fit.covariance(at, at));
-    const auto back = [&](double x) {
-      const double inside = std::clamp(x, free[i].low, free[i].high);
-      return free[i].logarithmic ? std::exp(inside) : inside;
-    };
     FoundEffect& found = out[static_cast<std::size_t>(free[i].effect)];
     const EffectParameter& kind = found.effect.kind().parameters[static_cast<std::size_t>(free[i].parameter)];
-    found.parameters.push_back({std::string(kind.name), std::string(kind.unit), back(t), back(t - half), back(t + half)});
+    const auto back = [&](double x) { return from_natural(kind, std::clamp(x, free[i].low, free[i].high)); };
+    found.parameters.push_back(
+        {std::string(kind.name), std::string(kind.unit), back(t), back(t - half), back(t + half)});
   }
   if (out.size() == 1) {
     out.front().gain = selection.nothing().cost - fit.cost;
@@ -44,15 +43,16 @@ std::vector<FoundEffect> found_effects(const EffectSelection& selection, const E
 }
 
 /// Rivals of the last effect that explain the records as well.
-std::vector<EffectFit> equals_of(const EffectSelection& selection, const EffectFit& best, std::vector<EffectFit> rivals,
-                                 int flights) {
+std::vector<EffectFit> equals_of(const EffectSelection& selection, const EffectFit& best,
+                                 std::vector<EffectFit> rivals, int flights) {
   std::vector<EffectFit> out;
   for (EffectFit& rival : rivals) {
     if (rival.effects.back().name() == best.effects.back().name()) continue;
     if (rival.effects.size() != best.effects.size()) continue;
     if (rival.cost > best.cost + 4.0 * kClassGain) continue;  // screening is coarse
     rival = selection.refitted(rival.effects, flights);
-    if (rival.usable() && rival.cost < best.cost + kClassGain && selection.adequate(rival)) out.push_back(rival);
+    if (rival.usable() && rival.cost < best.cost + kClassGain && selection.adequate(rival))
+      out.push_back(rival);
   }
   return out;
 }
@@ -64,13 +64,15 @@ void measure_gaps(const Comparison& comparison, const Comparison* holdout, const
   if (holdout != nullptr) {
     const auto held = static_cast<double>(holdout->size());
     out.holdout_lines = false;
-    out.training = gap_of(comparison.discrepancy().squaredNorm(), fit.residual.squaredNorm(), mean * all, all);
+    out.training =
+        gap_of(comparison.discrepancy().squaredNorm(), fit.residual.squaredNorm(), mean * all, all);
     double after = holdout->discrepancy().squaredNorm();
     if (!fit.effects.empty()) {
       const std::vector<std::vector<Effect>> sets = {fit.effects};
       after = (holdout->discrepancy() - holdout->changes(sets, options.final_flights).col(0)).squaredNorm();
     }
-    out.holdout = gap_of(holdout->discrepancy().squaredNorm(), after, holdout->thresholds().energy_mean, held);
+    out.holdout =
+        gap_of(holdout->discrepancy().squaredNorm(), after, holdout->thresholds().energy_mean, held);
     return;
   }
   const std::vector<int> training = comparison.training_rows(), held = comparison.held_out_rows();
@@ -113,15 +115,19 @@ Diagnosis diagnose(const Comparison& comparison, const Comparison* holdout, cons
   const std::vector<ScanHit> first = selection.hits(fit);
   out.evidence.scan = first.empty() ? 0.0 : first.front().glr;
   if (!first.empty()) {
-    out.evidence.leading = comparison.dictionary().atoms[static_cast<std::size_t>(first.front().atom)].effect.name();
+    out.evidence.leading =
+        comparison.dictionary().atoms[static_cast<std::size_t>(first.front().atom)].effect.name();
   }
   out.evidence.energy = fit.cost;
   out.evidence.local = comparison.local_score(fit.residual);
-  const bool detected =
-      out.evidence.scan > limit.scan || out.evidence.energy > limit.energy || out.evidence.local > limit.local;
+  const bool detected = out.evidence.scan > limit.scan || out.evidence.energy > limit.energy ||
+                        out.evidence.local > limit.local;
 
   std::vector<EffectFit> rivals;
   while (detected && static_cast<int>(fit.effects.size()) < options.most_effects) {
+    // Half of what is required: the linear ratio of a signature may fall short of the fit's gain.
+    const std::vector<ScanHit> hits = selection.hits(fit);
+    if (hits.empty() || hits.front().glr < 0.5 * limit.scan) break;
     std::vector<EffectFit> next = selection.extended(fit);
     if (next.empty() || !selection.accepted(fit, next.front(), next.front().effects.back())) break;
     fit = selection.exchanged(selection.pruned(next.front()));
@@ -136,7 +142,8 @@ Diagnosis diagnose(const Comparison& comparison, const Comparison* holdout, cons
   } else {
     out.verdict = adequate ? Verdict::named : Verdict::unknown;
     if (fit.effects.size() == 1 && adequate) {
-      const std::vector<EffectFit> equals = equals_of(selection, fit, std::move(rivals), options.final_flights);
+      const std::vector<EffectFit> equals =
+          equals_of(selection, fit, std::move(rivals), options.final_flights);
       if (!equals.empty()) {
         out.verdict = Verdict::effect_class;
         out.members.push_back(fit.effects.front());

@@ -23,9 +23,10 @@ std::string_view name(Verdict verdict);
 
 struct DiagnosisOptions {
   int most_effects = 3;
-  int rivals = 4;           ///< signatures that are fitted in a forward step
+  int rivals = 4;  ///< signatures that are fitted in a forward step
   int screening_flights = 2;
   int final_flights = 6;
+  std::vector<std::string> excluded;  ///< ids of candidates that are left out of this one search
 };
 
 /// |z|^2 per degree of freedom.
@@ -46,29 +47,29 @@ struct FoundEffect {
 
 /// What the decision rests on.
 struct Evidence {
-  double scan = 0.0, energy = 0.0, local = 0.0;           ///< of the discrepancy
+  double scan = 0.0, energy = 0.0, local = 0.0;                 ///< of the discrepancy
   double scan_left = 0.0, energy_left = 0.0, local_left = 0.0;  ///< of what the effects leave
-  std::string leading;                                    ///< effect with the largest GLR
+  std::string leading;                                          ///< effect with the largest GLR
 };
 
 struct Diagnosis {
   Verdict verdict = Verdict::none;
-  std::vector<FoundEffect> effects;   ///< unknown: a partial explanation, or none
-  std::vector<Effect> members;        ///< of the class, the best first, at their own fits
-  std::string separate_by;            ///< experiment that would tell the members apart
+  std::vector<FoundEffect> effects;  ///< unknown: a partial explanation, or none
+  std::vector<Effect> members;       ///< of the class, the best first, at their own fits
+  std::string separate_by;           ///< experiment that would tell the members apart
   Gap training, holdout;
-  bool holdout_lines = true;          ///< every fifth line was held back; false: whole records
+  bool holdout_lines = true;  ///< every fifth line was held back; false: whole records
   Evidence evidence;
-  Eigen::VectorXd residual;           ///< of all rows
+  Eigen::VectorXd residual;  ///< of all rows
   std::vector<std::string> notes;
   [[nodiscard]] std::vector<Effect> effect_list() const;
 };
 
-constexpr double kNamingLevel = 0.01;    ///< alpha of 2 p ln(V/alpha)
-constexpr double kResolution = 0.01;     ///< of the discrepancy's excess energy
-constexpr double kMaterialShare = 0.005; ///< of that energy: the least gain of a further effect
-constexpr double kMaterialSize = 0.05;   ///< of the least moderate size
-constexpr double kClassGain = 10.6;      ///< 2 ln of a likelihood ratio of 200
+constexpr double kNamingLevel = 0.01;     ///< alpha of 2 p ln(V/alpha)
+constexpr double kResolution = 0.01;      ///< of the discrepancy's excess energy
+constexpr double kMaterialShare = 0.005;  ///< of that energy: the least gain of a further effect
+constexpr double kMaterialSize = 0.05;    ///< of the least moderate size
+constexpr double kClassGain = 10.6;       ///< 2 ln of a likelihood ratio of 200
 
 /// `holdout`: records that take no part in the fit, or null.
 Diagnosis diagnose(const Comparison& comparison, const Comparison* holdout, const DiagnosisOptions& options);

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 
+#include "core/discrepancy/effect_knowledge.h"
+#include "core/discrepancy/effect_size.h"
+
 namespace fatmc {
 namespace {
 
 constexpr double kSmall = 0.25;  // of the least moderate size: nearly the derivative
-constexpr int kShapePlaces = 5;  // of the first shape; a flexible mode is found from its neighbours on the grid
+constexpr int kShapePlaces =
+    5;  // of the first shape; a flexible mode is found from its neighbours on the grid
 
 /// Values of the shapes: the first on a grid, the others in the middle of their range.
 std::vector<std::vector<double>> shape_grid(const EffectKind& kind, const std::vector<double>& nominal) {
@@ -30,18 +34,21 @@ std::vector<std::vector<double>> shape_grid(const EffectKind& kind, const std::v
   return out;
 }
 
-/// Sizes of one strength.
+/// Sizes of one strength. What a limit does depends on how far it is met: three of them, and a mild one beyond.
 std::vector<double> strengths(const EffectParameter& parameter) {
-  std::vector<double> out;
-  for (const bool mirrored : {false, true}) {
-    if (mirrored && parameter.mirror == EffectParameter::Mirror::none) continue;
-    const double large = parameter.moderate(1.0, mirrored);
-    const double small = parameter.toward(parameter.moderate(0.0, mirrored), kSmall);
-    for (const double value : {small, large}) {
-      if (value >= parameter.low && value <= parameter.high) out.push_back(value);
+  std::vector<double> wanted;
+  if (is_limit(parameter)) {
+    for (const double place : {0.0, 0.5, 1.0, 1.5}) wanted.push_back(parameter.moderate(place, false));
+  } else {
+    const double least = place_of_least(parameter);
+    for (const bool mirrored : {false, true}) {
+      if (mirrored && parameter.mirror == EffectParameter::Mirror::none) continue;
+      wanted.push_back(parameter.toward(parameter.moderate(least, mirrored), kSmall));
+      wanted.push_back(parameter.moderate(1.0 - least, mirrored));
     }
   }
-  return out;
+  std::erase_if(wanted, [&](double value) { return value < parameter.low || value > parameter.high; });
+  return wanted;
 }
 
 }  // namespace
@@ -49,6 +56,7 @@ std::vector<double> strengths(const EffectParameter& parameter) {
 std::vector<Effect> candidate_variants(const std::vector<std::string>& excluded) {
   std::vector<Effect> out = effect_variants();
   std::erase_if(out, [&](const Effect& e) {
+    if (find_knowledge(e.id) == nullptr) return true;
     return std::find(excluded.begin(), excluded.end(), e.id) != excluded.end() ||
            std::find(excluded.begin(), excluded.end(), e.name()) != excluded.end();
   });

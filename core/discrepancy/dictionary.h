@@ -19,13 +19,14 @@ struct Atom {
 struct Dictionary {
   std::vector<Effect> variants;  ///< candidates at nominal values: kinds with each choice
   std::vector<Atom> atoms;
-  Eigen::MatrixXd differences;   ///< layout size x atoms; zero where the effect cannot be flown at that size
+  Eigen::MatrixXd differences;  ///< layout size x atoms; zero where the effect cannot be flown at that size
 
   /// Flights behind a signature, with common random numbers.
   static constexpr int kFlights = 2;
 };
 
-/// Candidates of a diagnosis without those whose ids are in `excluded`.
+/// Candidates of a diagnosis: every choice of the effects that effect_knowledge.h describes, without those whose id or name
+/// is in `excluded`.
 std::vector<Effect> candidate_variants(const std::vector<std::string>& excluded);
 
 /// Effects at the sizes that signatures are taken at: from every strength a quarter of the least and the whole of the

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/discrepancy/effect_size.h"
+
 namespace fatmc {
 namespace {
 
@@ -19,19 +21,26 @@ struct Point {
 
 class Search {
  public:
-  Search(const Comparison& comparison, std::vector<Effect> start, const std::vector<int>& rows, const FitOptions& options)
-      : comparison_(comparison), effects_(std::move(start)), rows_(rows), options_(options), free_(free_parameters(effects_)) {}
+  Search(const Comparison& comparison, std::vector<Effect> start, const std::vector<int>& rows,
+         const FitOptions& options)
+      : comparison_(comparison),
+        effects_(std::move(start)),
+        rows_(rows),
+        options_(options),
+        free_(free_parameters(effects_)) {}
 
   [[nodiscard]] const std::vector<FreeParameter>& free() const { return free_; }
   [[nodiscard]] std::vector<Effect> at(const Vector& t) const {
     std::vector<Effect> out = effects_;
-    for (std::size_t i = 0; i < free_.size(); ++i) set_natural_value(out, free_[i], t[static_cast<Eigen::Index>(i)]);
+    for (std::size_t i = 0; i < free_.size(); ++i)
+      set_natural_value(out, free_[i], t[static_cast<Eigen::Index>(i)]);
     return out;
   }
   [[nodiscard]] Vector start() const {
     Vector t(static_cast<Eigen::Index>(free_.size()));
     for (std::size_t i = 0; i < free_.size(); ++i) {
-      t[static_cast<Eigen::Index>(i)] = std::clamp(natural_value(effects_, free_[i]), free_[i].low, free_[i].high);
+      t[static_cast<Eigen::Index>(i)] =
+          std::clamp(natural_value(effects_, free_[i]), free_[i].low, free_[i].high);
     }
     return t;
   }
@@ -91,7 +100,8 @@ class Search {
 };
 
 /// The step of (J^T J + damping diag) d = J^T r, inside the ranges.
-Vector damped_step(const Search& search, const Point& at, const Matrix& normal, const Vector& gradient, double damping) {
+Vector damped_step(const Search& search, const Point& at, const Matrix& normal, const Vector& gradient,
+                   double damping) {
   Matrix damped = normal;
   damped.diagonal() *= 1.0 + damping;
   damped.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff() + 1e-300;
@@ -111,17 +121,19 @@ std::vector<FreeParameter> free_parameters(const std::vector<Effect>& effects) {
     const EffectKind& kind = effects[e].kind();
     for (std::size_t p = 0; p < kind.parameters.size(); ++p) {
       const EffectParameter& parameter = kind.parameters[p];
-      FreeParameter free{static_cast<int>(e), static_cast<int>(p), parameter.logarithmic && parameter.low > 0.0,
-                         parameter.low, parameter.high, 0.0};
-      const auto natural = [&](double value) { return free.logarithmic ? std::log(value) : value; };
-      free.low = natural(parameter.low);
-      free.high = natural(parameter.high);
-      // A tenth of a moderate size: far above rounding, well inside what is nearly linear. Shapes have no nominal size.
-      const double from = parameter.strength ? parameter.nominal : parameter.moderate_high;
-      const double to = parameter.moderate_low;
-      const bool scale = !free.logarithmic || (from > 0.0 && to > 0.0);
-      free.step = scale ? 0.1 * std::abs(natural(to) - natural(from)) : 0.05;
-      if (free.logarithmic) free.step = std::clamp(free.step, 0.005, 0.05);
+      FreeParameter free{static_cast<int>(e), static_cast<int>(p), to_natural(parameter, parameter.low),
+                         to_natural(parameter, parameter.high), 0.0};
+      // A tenth of the least moderate size: far above rounding, well inside what is nearly linear. Limits and shapes have
+      // no such size: 2 % of a limit, a thirtieth of the range that the shape is usually in.
+      if (is_limit(parameter)) {
+        free.step = 0.02;
+      } else if (parameter.strength) {
+        free.step = 0.1 * least_moderate(parameter);
+      } else {
+        free.step = std::abs(to_natural(parameter, parameter.moderate_high) -
+                             to_natural(parameter, parameter.moderate_low)) /
+                    30.0;
+      }
       if (free.step == 0.0) free.step = 1e-3 * (free.high - free.low);
       out.push_back(free);
     }
@@ -129,17 +141,18 @@ std::vector<FreeParameter> free_parameters(const std::vector<Effect>& effects) {
   return out;
 }
 
-double natural_value(const std::vector<Effect>& effects, const FreeParameter& parameter) {
-  const double value = effects[static_cast<std::size_t>(parameter.effect)].values[static_cast<std::size_t>(parameter.parameter)];
-  return parameter.logarithmic ? std::log(value) : value;
+double natural_value(const std::vector<Effect>& effects, const FreeParameter& free) {
+  const Effect& effect = effects[static_cast<std::size_t>(free.effect)];
+  const auto p = static_cast<std::size_t>(free.parameter);
+  return to_natural(effect.kind().parameters[p], effect.values[p]);
 }
 
-void set_natural_value(std::vector<Effect>& effects, const FreeParameter& parameter, double t) {
-  const double value = parameter.logarithmic ? std::exp(t) : t;
-  const EffectParameter& kind =
-      effects[static_cast<std::size_t>(parameter.effect)].kind().parameters[static_cast<std::size_t>(parameter.parameter)];
-  effects[static_cast<std::size_t>(parameter.effect)].values[static_cast<std::size_t>(parameter.parameter)] =
-      std::clamp(value, kind.low, kind.high);  // exp(log(x)) may pass an end by a rounding
+void set_natural_value(std::vector<Effect>& effects, const FreeParameter& free, double t) {
+  Effect& effect = effects[static_cast<std::size_t>(free.effect)];
+  const auto p = static_cast<std::size_t>(free.parameter);
+  const EffectParameter& kind = effect.kind().parameters[p];
+  effect.values[p] =
+      std::clamp(from_natural(kind, t), kind.low, kind.high);  // exp(log(x)) may pass an end by a rounding
 }
 
 EffectFit fit_effects(const Comparison& comparison, std::vector<Effect> start, const std::vector<int>& rows,
@@ -175,7 +188,8 @@ EffectFit fit_effects(const Comparison& comparison, std::vector<Effect> start, c
     }
     damping = std::max(1e-6, damping / 64.0);
     // A step that did what the linear model promised leaves a minimum to within what is enough.
-    const bool as_promised = std::abs(at.cost - next.cost - predicted) < options.enough + options.relative * at.cost;
+    const bool as_promised =
+        std::abs(at.cost - next.cost - predicted) < options.enough + options.relative * at.cost;
     at = std::move(next);
     current = false;
     if (as_promised) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/discrepancy/effect_size.h"
+
 namespace fatmc {
 namespace {
 
@@ -17,41 +19,23 @@ constexpr int kLawFlights = 100;
 /// Squared change of what is held back, in deviations, from which on it must be a change for the better: three deviations.
 constexpr double kVisible = 9.0;
 
-double natural(const EffectParameter& parameter, double value) {
-  return parameter.logarithmic && value > 0.0 ? std::log(value) : value;
-}
-
-/// Largest distance of a strength from nominal, in moderate sizes.
-double relative_size(const Effect& effect) {
-  const EffectKind& kind = effect.kind();
-  double most = 0.0;
-  for (std::size_t p = 0; p < kind.parameters.size(); ++p) {
-    const EffectParameter& parameter = kind.parameters[p];
-    if (!parameter.strength) continue;
-    const double zero = natural(parameter, parameter.nominal);
-    const double moderate = std::abs(natural(parameter, parameter.moderate_low) - zero);
-    const double distance = std::abs(natural(parameter, effect.values[p]) - zero);
-    if (moderate > 0.0) most = std::max(most, distance / moderate);
-  }
-  return most;
-}
-
 /// The effect of a signature, scaled by the amplitude that the scan gives it.
 Effect scaled(const Effect& signature, double amplitude) {
   const EffectKind& kind = signature.kind();
   Effect out = signature;
   for (std::size_t p = 0; p < kind.parameters.size(); ++p) {
     const EffectParameter& parameter = kind.parameters[p];
-    if (!parameter.strength) continue;
-    out.values[p] = std::clamp(parameter.toward(signature.values[p], std::clamp(amplitude, 0.05, 4.0)), parameter.low,
-                               parameter.high);
+    if (!parameter.strength || is_limit(parameter)) continue;
+    out.values[p] = std::clamp(parameter.toward(signature.values[p], std::clamp(amplitude, 0.05, 4.0)),
+                               parameter.low, parameter.high);
   }
   return out;
 }
 
 }  // namespace
 
-EffectSelection::EffectSelection(const Comparison& comparison, const Comparison* holdout, const DiagnosisOptions& options)
+EffectSelection::EffectSelection(const Comparison& comparison, const Comparison* holdout,
+                                 const DiagnosisOptions& options)
     : comparison_(comparison), holdout_(holdout), options_(options) {
   excess_ = std::max(0.0, comparison.discrepancy().squaredNorm() - comparison.thresholds().energy_mean);
   local_ = comparison.local_score(comparison.discrepancy());
@@ -78,12 +62,15 @@ std::vector<ScanHit> EffectSelection::hits(const EffectFit& base) const {
   for (const ScanHit& hit : all) {
     const auto v = static_cast<std::size_t>(dictionary.atoms[static_cast<std::size_t>(hit.atom)].variant);
     const std::string variant = dictionary.variants[v].name();
+    const auto& excluded = options_.excluded;
+    if (std::find(excluded.begin(), excluded.end(), dictionary.variants[v].id) != excluded.end()) continue;
     const bool used = std::any_of(base.effects.begin(), base.effects.end(),
                                   [&](const Effect& e) { return e.name() == variant; });
     if (!used && hit.glr > best[v].glr) best[v] = hit;
   }
   std::erase_if(best, [](const ScanHit& hit) { return hit.atom < 0; });
-  std::stable_sort(best.begin(), best.end(), [](const ScanHit& a, const ScanHit& b) { return a.glr > b.glr; });
+  std::stable_sort(best.begin(), best.end(),
+                   [](const ScanHit& a, const ScanHit& b) { return a.glr > b.glr; });
   return best;
 }
 
@@ -92,22 +79,25 @@ std::vector<EffectFit> EffectSelection::extended(const EffectFit& base) const {
   std::vector<EffectFit> out;
   const std::vector<ScanHit> leading = hits(base);
   for (std::size_t i = 0; i < leading.size() && i < static_cast<std::size_t>(options_.rivals); ++i) {
-    // A rival with a small part of the leader's likelihood gain does not overtake it by its curvature.
-    if (leading[i].glr < 0.25 * leading.front().glr) break;
+    // Signatures are taken at two sizes, so that a rival whose best one has a small part of the leader's likelihood gain does
+    // not overtake it by its curvature; the second is always tried, unless it is far off.
+    if (leading[i].glr < (i == 1 ? 0.3 : 0.6) * leading.front().glr) break;
     std::vector<Effect> start = base.effects;
-    start.push_back(
-        scaled(comparison_.dictionary().atoms[static_cast<std::size_t>(leading[i].atom)].effect, leading[i].amplitude));
+    start.push_back(scaled(comparison_.dictionary().atoms[static_cast<std::size_t>(leading[i].atom)].effect,
+                           leading[i].amplitude));
     EffectFit one = fit_effects(comparison_, std::move(start), {}, fit);
     if (one.usable()) out.push_back(std::move(one));
   }
-  std::stable_sort(out.begin(), out.end(), [](const EffectFit& a, const EffectFit& b) { return a.cost < b.cost; });
+  std::stable_sort(out.begin(), out.end(),
+                   [](const EffectFit& a, const EffectFit& b) { return a.cost < b.cost; });
   return out;
 }
 
 double EffectSelection::required_gain(const Effect& effect) const {
   const auto p = static_cast<double>(effect.values.size());
   const auto v = static_cast<double>(comparison_.dictionary().variants.size());
-  return std::max(comparison_.thresholds().scan, 2.0 * p * std::log(v / kNamingLevel)) + kMaterialShare * excess_;
+  return std::max(comparison_.thresholds().scan, 2.0 * p * std::log(v / kNamingLevel)) +
+         kMaterialShare * excess_;
 }
 
 bool EffectSelection::accepted(const EffectFit& without, const EffectFit& with, const Effect& added) const {
@@ -150,7 +140,8 @@ double EffectSelection::held_out_cost(const EffectFit& fit) const {
   }
   if (fit.effects.empty()) return holdout_->discrepancy().squaredNorm();
   const std::vector<std::vector<Effect>> sets = {fit.effects};
-  const double cost = (holdout_->discrepancy() - holdout_->changes(sets, options_.final_flights).col(0)).squaredNorm();
+  const double cost =
+      (holdout_->discrepancy() - holdout_->changes(sets, options_.final_flights).col(0)).squaredNorm();
   return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
 }
 

@@ -67,7 +67,7 @@ Result<FeatureLayout> FeatureLayout::create(PeriodicExperiment experiment, bool 
     const double f = experiment.lines[k] * periods * bin_hz;
     build.add(FeatureKind::line, range(0, responses), static_cast<int>(k), f, f);
   }
-  build.add(FeatureKind::dc, range(0, all), -1, 0.0, 0.0);
+  build.add(FeatureKind::dc, range(0, attitude ? all + 1 : all), -1, 0.0, 0.0);
 
   const double half = 0.5 * rate;
   const double first = experiment.lines.front() * periods * bin_hz;

@@ -14,13 +14,6 @@ TrialSeed null_seed(int flight) {
   return {0, name_hash("discrepancy"), name_hash("model"), static_cast<std::uint64_t>(flight)};
 }
 
-Result<Flight> prepare(const Aircraft& aircraft, const FlightSetup& setup, std::span<const Effect> effects) {
-  if (effects.empty()) return Flight::prepare(aircraft, setup);
-  auto modified = apply(aircraft, setup, effects);
-  if (!modified) return fail(modified.error());
-  return Flight::prepare(modified->aircraft, modified->setup);
-}
-
 /// `work(i)` for i = 0 ... count-1 from several threads.
 template <typename Work>
 void share(int count, int threads, Work work) {
@@ -49,8 +42,8 @@ class Counter {
   std::mutex mutex_;
 };
 
-Result<LoopRecord> fly_one(const Flight& flight, const Eigen::MatrixX3d& reference, const FeatureLayout& layout,
-                           int number) {
+Result<LoopRecord> fly_one(const Flight& flight, const Eigen::MatrixX3d& reference,
+                           const FeatureLayout& layout, int number) {
   FlightRecord flown;
   flight.fly(reference, null_seed(number), flown);
   if (flown.ending != Ending::completed) {
@@ -68,22 +61,32 @@ Result<LoopRecord> fly_one(const Flight& flight, const Eigen::MatrixX3d& referen
 
 }  // namespace
 
-ModelSimulator::ModelSimulator(Aircraft aircraft, FlightSetup setup, Eigen::MatrixX3d reference,
-                               FeatureExtractor extractor)
+ModelSimulator::ModelSimulator(Aircraft aircraft, FlightSetup setup, std::vector<Effect> own,
+                               Eigen::MatrixX3d reference, FeatureExtractor extractor)
     : aircraft_(std::move(aircraft)),
       setup_(std::move(setup)),
+      own_(std::move(own)),
       reference_(std::move(reference)),
       extractor_(std::move(extractor)) {}
 
-std::vector<EffectFlights> ModelSimulator::fly(std::span<const std::vector<Effect>> sets, int first, int count,
-                                               int threads, const FlightProgress& progress) const {
+Result<Flight> ModelSimulator::prepare(std::span<const Effect> effects) const {
+  std::vector<Effect> all = own_;
+  all.insert(all.end(), effects.begin(), effects.end());
+  if (all.empty()) return Flight::prepare(aircraft_, setup_);
+  auto modified = apply(aircraft_, setup_, all);
+  if (!modified) return fail(modified.error());
+  return Flight::prepare(modified->aircraft, modified->setup);
+}
+
+std::vector<EffectFlights> ModelSimulator::fly(std::span<const std::vector<Effect>> sets, int first,
+                                               int count, int threads, const FlightProgress& progress) const {
   const int set_count = static_cast<int>(sets.size());
   std::vector<EffectFlights> out(sets.size());
   std::vector<std::optional<Flight>> flights(sets.size());
   share(set_count, threads, [&](int s) {
     const auto at = static_cast<std::size_t>(s);
     out[at].features.setZero(extractor_.layout().size, count);
-    auto flight = prepare(aircraft_, setup_, sets[at]);
+    auto flight = prepare(sets[at]);
     if (flight) {
       flights[at].emplace(std::move(*flight));
     } else {
@@ -113,14 +116,15 @@ std::vector<EffectFlights> ModelSimulator::fly(std::span<const std::vector<Effec
 }
 
 Result<LoopRecord> ModelSimulator::record(std::span<const Effect> effects, int number) const {
-  auto flight = prepare(aircraft_, setup_, effects);
+  auto flight = prepare(effects);
   if (!flight) return fail(flight.error());
   return fly_one(*flight, reference_, extractor_.layout(), number);
 }
 
-Status ModelSimulator::visit_null(int count, int threads, const std::function<void(int, const LoopRecord&)>& visit,
+Status ModelSimulator::visit_null(int count, int threads,
+                                  const std::function<void(int, const LoopRecord&)>& visit,
                                   const FlightProgress& progress) const {
-  auto flight = prepare(aircraft_, setup_, {});
+  auto flight = prepare({});
   if (!flight) return fail(flight.error());
   std::vector<std::string> failures(static_cast<std::size_t>(count));
   Counter counter(count, progress);

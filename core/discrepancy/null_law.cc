@@ -23,7 +23,8 @@ Matrix proper_covariance(const Matrix& samples, double divisor) {
 }
 
 /// Adds the floors to the covariance of a block.
-void add_floors(const FeatureLayout& layout, const FeatureBlock& block, const Eigen::VectorXd& mean, Matrix& cov) {
+void add_floors(const FeatureLayout& layout, const FeatureBlock& block, const Eigen::VectorXd& mean,
+                Matrix& cov) {
   const auto n = static_cast<Eigen::Index>(block.channels.size());
   for (Eigen::Index i = 0; i < n; ++i) {
     const int channel = block.channels[static_cast<std::size_t>(i)];
@@ -74,7 +75,8 @@ Matrix NullLaw::whiten_blocks(const FeatureLayout& layout, const Eigen::Ref<cons
   Matrix out(d.rows(), d.cols());
   for (std::size_t b = 0; b < layout.blocks.size(); ++b) {
     const FeatureBlock& block = layout.blocks[b];
-    out.middleRows(block.first, block.size()).noalias() = inverse_factor[b] * d.middleRows(block.first, block.size());
+    out.middleRows(block.first, block.size()).noalias() =
+        inverse_factor[b] * d.middleRows(block.first, block.size());
   }
   return out;
 }

@@ -20,8 +20,7 @@
 namespace fatmc {
 
 struct NullLaw {
-  static constexpr double kAttitudeTrust = 0.01, kGainTrust = 2e-3, kOffsetTrust = 5e-4,
-                          kLatticeTrust = 0.02;
+  static constexpr double kAttitudeTrust = 0.01, kGainTrust = 2e-3, kOffsetTrust = 5e-4, kLatticeTrust = 0.02;
   static constexpr int kMostDirections = 16;
 
   Eigen::VectorXd mean;
@@ -33,7 +32,8 @@ struct NullLaw {
 
   /// (I + F F^T)^(-1/2) L^-1 D, columns of differences of features: where the model is right, columns of x - mean become
   /// white noise of unit variance.
-  [[nodiscard]] Eigen::MatrixXd whiten(const FeatureLayout& layout, const Eigen::Ref<const Eigen::MatrixXd>& d) const;
+  [[nodiscard]] Eigen::MatrixXd whiten(const FeatureLayout& layout,
+                                       const Eigen::Ref<const Eigen::MatrixXd>& d) const;
   /// Adds what is not known of the experiment: columns of D are changes of the features by one standard deviation each.
   void add_uncertainty(const FeatureLayout& layout, const Eigen::Ref<const Eigen::MatrixXd>& d);
 

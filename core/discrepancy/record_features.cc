@@ -29,6 +29,14 @@ double repetition(std::span<const double> x) {
   return std::log(static_cast<double>(x.size()) / static_cast<double>(distinct));
 }
 
+/// x without the straight line from its first to its last sample, its mean kept. A record that ends elsewhere than it began has
+/// a step where the DFT closes it, whose power falls with f^-2 only and would hide the gyros' noise.
+void level_ends(std::span<const double> x, std::vector<double>& out) {
+  const double slope = (x.back() - x.front()) / static_cast<double>(x.size() - 1);
+  const double middle = 0.5 * static_cast<double>(x.size() - 1);
+  for (std::size_t i = 0; i < x.size(); ++i) out[i] = x[i] - slope * (static_cast<double>(i) - middle);
+}
+
 struct BandPower {
   double sum = 0.0, largest = 0.0;
   int count = 0;
@@ -63,6 +71,10 @@ Eigen::VectorXd FeatureExtractor::extract(const LoopRecord& record) const {
     if (block.kind == FeatureKind::lattice) {
       for (int c = 0; c < 3; ++c) out[block.first + c] = repetition(channel(record, c, layout_.attitude));
     }
+    if (block.kind == FeatureKind::dc && layout_.attitude) {
+      const auto phi = record.attitude.col(0).array();
+      out[block.first + block.size() - 1] = (phi.sin() * phi.tan()).mean();
+    }
     if (block.kind == FeatureKind::controller) controller(record, out.data() + block.first);
   }
   return out;
@@ -73,8 +85,10 @@ void FeatureExtractor::spectra(const LoopRecord& record, Eigen::VectorXd& out) c
   const int periods = layout_.experiment.periods;
   const double bin_hz = layout_.experiment.rate_hz / n;
   std::vector<std::complex<double>> bins(static_cast<std::size_t>(n / 2 + 1));
+  std::vector<double> samples(static_cast<std::size_t>(n));
   for (int c = 0; c < static_cast<int>(layout_.channels.size()); ++c) {
-    dft_.transform(channel(record, c, layout_.attitude), bins);
+    level_ends(channel(record, c, layout_.attitude), samples);
+    dft_.transform(samples, bins);
     for (const FeatureBlock& block : layout_.blocks) {
       const auto at = std::find(block.channels.begin(), block.channels.end(), c);
       if (at == block.channels.end()) continue;
@@ -98,7 +112,8 @@ void FeatureExtractor::spectra(const LoopRecord& record, Eigen::VectorXd& out) c
         const int last = std::min(static_cast<int>(std::floor(block.high_hz / bin_hz)), (n - 1) / 2);
         for (int m = static_cast<int>(std::floor(block.low_hz / bin_hz)) + 1; m <= last; ++m) {
           const bool harmonic = m % periods == 0;
-          if (harmonic != harmonics || (harmonic && excited_[static_cast<std::size_t>(m / periods)] != 0)) continue;
+          if (harmonic != harmonics || (harmonic && excited_[static_cast<std::size_t>(m / periods)] != 0))
+            continue;
           band.add(std::norm(bins[static_cast<std::size_t>(m)]));
         }
         const double mean = std::max(kLeastPower, band.sum / std::max(1, band.count));

@@ -14,8 +14,9 @@ Eigen::Index element(int line, int output, int input) { return 9 * line + 3 * in
 
 Eigen::VectorXcd response_vector(FastLpm& estimator, const LoopRecord& record, bool closed_loop) {
   estimator.load(record.output, record.input);
-  const FrmEstimate& frm =
-      closed_loop ? estimator.indirect(spectra_at_lines(estimator.grid(), record.reference)) : estimator.direct();
+  const FrmEstimate& frm = closed_loop
+                               ? estimator.indirect(spectra_at_lines(estimator.grid(), record.reference))
+                               : estimator.direct();
   Eigen::VectorXcd out(9 * frm.line_count());
   for (int k = 0; k < frm.line_count(); ++k) out.segment<9>(9 * k) = frm.G[k].reshaped();
   return out;
@@ -28,7 +29,8 @@ ResponseMap ResponseMap::layout_of(const LpmGrid& grid) {
   const int bands = std::min(kBands, lines);
   for (int output = 0; output < 3; ++output) {
     for (int input = 0; input < 3; ++input) {
-      for (int b = 0; b < bands; ++b) out.cells_.push_back({output, input, lines * b / bands, lines * (b + 1) / bands - 1});
+      for (int b = 0; b < bands; ++b)
+        out.cells_.push_back({output, input, lines * b / bands, lines * (b + 1) / bands - 1});
     }
   }
   return out;
@@ -42,10 +44,12 @@ ResponseMap ResponseMap::fit(const LpmGrid& grid, const Eigen::Ref<const Eigen::
                   static_cast<double>(flights - 1);
   const auto cells = static_cast<Eigen::Index>(out.cells_.size());
   Eigen::MatrixXd values(flights, cells);
-  for (Eigen::Index n = 0; n < flights; ++n) values.row(n) = out.statistics(responses.row(n).transpose()).transpose();
+  for (Eigen::Index n = 0; n < flights; ++n)
+    values.row(n) = out.statistics(responses.row(n).transpose()).transpose();
   out.centre_ = values.colwise().mean().transpose();
   const Eigen::MatrixXd centred = values.rowwise() - out.centre_.transpose();
-  out.deviation_ = (centred.colwise().squaredNorm() / static_cast<double>(flights - 1)).cwiseSqrt().transpose();
+  out.deviation_ =
+      (centred.colwise().squaredNorm() / static_cast<double>(flights - 1)).cwiseSqrt().transpose();
   std::vector<double> largest;
   for (Eigen::Index n = 0; n < flights; ++n) {
     largest.push_back((centred.row(n).transpose().array() / out.deviation_.array().max(1e-12)).maxCoeff());
