@@ -1,12 +1,15 @@
 #include "campaigns/registry_trials.h"
 
+#include "campaigns/conditions/trial.h"
 #include "campaigns/coverage/trial.h"
+#include "campaigns/estimators/trial.h"
 #include "campaigns/hidden_effect/trial.h"
 
 namespace fatmc {
 
 const std::vector<TrialStudy>& trial_studies() {
-  static const std::vector<TrialStudy> studies = {coverage::kTrialStudy, hidden_effect::kTrialStudy};
+  static const std::vector<TrialStudy> studies = {conditions::kTrialStudy, coverage::kTrialStudy,
+                                                  estimators::kTrialStudy, hidden_effect::kTrialStudy};
   return studies;
 }
 
