@@ -8,6 +8,7 @@
 #include "core/discrepancy/basis_file.h"
 #include "core/discrepancy/effect_knowledge.h"
 #include "core/discrepancy/effect_size.h"
+#include "core/signal/multisine.h"
 #include "tests/unit/flight/fat.h"
 
 namespace fatmc {
