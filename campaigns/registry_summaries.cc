@@ -7,6 +7,7 @@
 #include "campaigns/coverage/summary.h"
 #include "campaigns/dynamics_change/summary.h"
 #include "campaigns/estimators/summary.h"
+#include "campaigns/hidden_effect/summary.h"
 
 namespace fatmc {
 
@@ -17,6 +18,7 @@ const SummaryStudy* find_summary_study(std::string_view name) {
       conditions::kSummaryStudy,
       dynamics_change::kSummaryStudy,
       candidates::kSummaryStudy,
+      hidden_effect::kSummaryStudy,
   };
   for (const SummaryStudy& study : studies) {
     if (study.name == name) return &study;

@@ -5,6 +5,7 @@
 #include "campaigns/coverage/trial.h"
 #include "campaigns/dynamics_change/trial.h"
 #include "campaigns/estimators/trial.h"
+#include "campaigns/hidden_effect/trial.h"
 
 namespace fatmc {
 
@@ -15,6 +16,7 @@ const std::vector<TrialStudy>& trial_studies() {
       conditions::kTrialStudy,
       dynamics_change::kTrialStudy,
       candidates::kTrialStudy,
+      hidden_effect::kTrialStudy,
   };
   return studies;
 }
