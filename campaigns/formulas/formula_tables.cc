@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "campaigns/formulas/design_tables.h"
 #include "campaigns/formulas/published.h"
 #include "core/ident/design_formulas.h"
 #include "core/ident/interpolation_bias.h"
@@ -143,6 +144,8 @@ std::vector<TableRow> formula_tables() {
   add_table_2_3(rows);
   add_table_2_4(rows);
   add_table_3_1(rows);
+  const std::vector<TableRow> designs = design_tables();
+  rows.insert(rows.end(), designs.begin(), designs.end());
   return rows;
 }
 
