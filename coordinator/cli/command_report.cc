@@ -7,9 +7,9 @@
 #include <fstream>
 #include <memory>
 
-#include "campaigns/formulas/formula_tables.h"
 #include "coordinator/cli/command.h"
 #include "coordinator/cli/database_use.h"
+#include "coordinator/cli/formula_results.h"
 #include "coordinator/cli/output_path.h"
 #include "coordinator/cli/study_results.h"
 #include "coordinator/plot/svg.h"
@@ -100,8 +100,9 @@ Result<CampaignPage> page_of(const std::string& path) {
 CampaignPage formula_page() {
   CampaignPage out;
   out.name = "formulas";
-  out.title = "Formulas";
-  out.rows = formula_tables();
+  out.title = "Formulas and the FAT";
+  out.rows = tables_without_database();
+  out.figures = figures_without_database();
   return out;
 }
 

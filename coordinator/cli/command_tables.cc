@@ -3,9 +3,9 @@
 #include <map>
 #include <memory>
 
-#include "campaigns/formulas/formula_tables.h"
 #include "coordinator/cli/command.h"
 #include "coordinator/cli/database_use.h"
+#include "coordinator/cli/formula_results.h"
 #include "coordinator/cli/study_results.h"
 #include "coordinator/report/tables.h"
 
@@ -37,7 +37,7 @@ std::string full_name(const std::vector<std::string>& known, const std::string& 
 
 Exit run(const Options& options) {
   std::vector<std::string> databases = options.databases;
-  std::vector<TableRow> rows = formula_tables();
+  std::vector<TableRow> rows = tables_without_database();
   if (!options.only.empty() && !full_name(names_of(rows), options.only).empty()) {
     databases.clear();  // a formula table needs no database, not even one that cannot be read
   } else if (databases.empty()) {
