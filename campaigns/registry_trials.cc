@@ -1,15 +1,23 @@
 #include "campaigns/registry_trials.h"
 
+#include "campaigns/candidates/trial.h"
 #include "campaigns/conditions/trial.h"
 #include "campaigns/coverage/trial.h"
+#include "campaigns/dynamics_change/trial.h"
 #include "campaigns/estimators/trial.h"
 #include "campaigns/hidden_effect/trial.h"
 
 namespace fatmc {
 
 const std::vector<TrialStudy>& trial_studies() {
-  static const std::vector<TrialStudy> studies = {conditions::kTrialStudy, coverage::kTrialStudy,
-                                                  estimators::kTrialStudy, hidden_effect::kTrialStudy};
+  static const std::vector<TrialStudy> studies = {
+      coverage::kTrialStudy,
+      estimators::kTrialStudy,
+      conditions::kTrialStudy,
+      dynamics_change::kTrialStudy,
+      candidates::kTrialStudy,
+      hidden_effect::kTrialStudy,
+  };
   return studies;
 }
 

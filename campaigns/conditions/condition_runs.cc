@@ -73,8 +73,9 @@ void add_run(const TrialRow& row, ConditionRuns& out, std::array<LineSums, kElem
     out.relative_error[e].push_back(metric(row, name_of(kElements[e], kRelativeError)));
     sums[e].add(need(row, name_of(kElements[e], kErrorReal)), need(row, name_of(kElements[e], kErrorImag)));
   }
-  for (std::size_t j = 0; j < kSmallestSnr.size(); ++j)
-    out.smallest_snr_db[j].push_back(metric(row, kSmallestSnr[j]));
+  for (std::size_t j = 0; j < kMedianSnr.size(); ++j)
+    out.median_snr_db[j].push_back(metric(row, kMedianSnr[j]));
+  out.outliers.push_back(metric(row, kOutliers));
   out.inside_95.push_back(metric(row, kInside95));
   double limited = 0.0;
   for (const char* servo : {"aileron", "left_ruddervator", "right_ruddervator"})

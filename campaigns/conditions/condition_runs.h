@@ -26,7 +26,8 @@ struct ConditionRuns {
   std::string failure;       ///< detail of the first of them
   std::vector<double> frequency_hz;
   std::array<std::vector<double>, kElements.size()> relative_error;  ///< one value a run with an estimate
-  std::array<std::vector<double>, 3> smallest_snr_db;
+  std::array<std::vector<double>, 3> median_snr_db;
+  std::vector<double> outliers;
   std::vector<double> inside_95;      ///< one value a run; 0 without an estimate
   std::vector<double> at_rate_limit;  ///< largest share of a servo, a value a run
   /// Mean over runs of (Ĝ − G0)/G0 at every line, and the standard deviation between runs of its magnitude.

@@ -29,8 +29,11 @@ inline constexpr std::string_view kFrequency = "frequency_hz";
 inline constexpr std::string_view kRelativeError =
     "relative_error";  ///< of an element: rms over lines of |error|
 inline constexpr std::string_view kInside95 = "share_inside_95";  ///< of all nine elements and lines, (5.13)
-inline constexpr std::array<std::string_view, 3> kSmallestSnr = {
-    "smallest_input_snr_db_xi_c", "smallest_input_snr_db_eta_c", "smallest_input_snr_db_zeta_c"};
+/// Median over the lines of the input SNR (5.10), an axis each.
+inline constexpr std::array<std::string_view, 3> kMedianSnr = {
+    "median_input_snr_db_xi_c", "median_input_snr_db_eta_c", "median_input_snr_db_zeta_c"};
+/// Share of lines and inputs below three standard deviations of their noise (5.2.2).
+inline constexpr std::string_view kOutliers = "share_of_outliers";
 
 inline std::string name_of(const Element& element, std::string_view what) {
   return std::string(element.key) + "." + std::string(what);

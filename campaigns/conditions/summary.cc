@@ -8,8 +8,16 @@
 namespace fatmc::conditions {
 namespace {
 
+/// The table's name: A.6 where the turn coordinator is what varies.
+std::string table_of(const std::vector<ConditionRuns>& cells) {
+  for (const ConditionRuns& cell : cells) {
+    if (cell.condition.turn_coordinator != cells.front().condition.turn_coordinator) return "Section A.6";
+  }
+  return "Conditions";
+}
+
 TableRow cell_row(const ConditionRuns& cell, const std::string& quantity, const std::string& unit) {
-  TableRow row = table_row("Conditions", cell.name, quantity, unit);
+  TableRow row = table_row("", cell.name, quantity, unit);
   if (cell.failed > 0)
     row.why =
         std::to_string(cell.failed) + " of " + std::to_string(cell.trials) + " flights gave no estimate";
@@ -47,11 +55,13 @@ Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& 
     add_mean(cell, "share of 95 % regions that hold G0", "%", cell.inside_95, 100.0, out);
     for (std::size_t j = 0; j < 3; ++j) {
       static constexpr std::array kInputs = {"ξ_c", "η_c", "ζ_c"};
-      add_mean(cell, std::string("smallest input SNR, ") + kInputs[j], "dB", cell.smallest_snr_db[j], 1.0,
-               out);
+      add_mean(cell, std::string("median input SNR, ") + kInputs[j], "dB", cell.median_snr_db[j], 1.0, out);
     }
+    add_mean(cell, "share of lines and inputs below 3 standard deviations", "%", cell.outliers, 100.0, out);
     add_mean(cell, "time that a servo stands at its rate limit", "%", cell.at_rate_limit, 100.0, out);
   }
+  const std::string table = table_of(*cells);
+  for (TableRow& row : out) row.table = table;
   return out;
 }
 

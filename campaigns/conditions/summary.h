@@ -9,8 +9,8 @@ namespace fatmc::conditions {
 /// Repetitions behind the intervals: no campaign is printed, T's other ones have 50.
 inline constexpr int kPublishedRepetitions = 50;
 
-/// Table "Conditions", a block of rows a cell: flights that ended early, error of the primary elements and of r/ξ_c, share
-/// inside 95 % regions, smallest input SNR.
+/// Table "Conditions", or "Section A.6" where the turn coordinator varies; a block of rows a cell: flights that gave no
+/// estimate, error of every element that does not vanish, share of 95 % regions that hold G0, median input SNR, outliers.
 Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& rows);
 
 /// "Conditions": error against turbulence, a curve for each gain and grade, where turbulence varies; "Section A.6": error of

@@ -6,6 +6,7 @@
 #include "campaigns/conditions/row_arrays.h"
 #include "campaigns/flown/flown_flights.h"
 #include "core/stats/confidence.h"
+#include "core/stats/empirical.h"
 
 namespace fatmc::conditions {
 namespace {
@@ -44,19 +45,23 @@ class ConditionTrials final : public PreparedCell {
     for (const Element& element : kElements) store_element(element, frm, row);
     const double quantile = f_quantile_2_2q(0.95, frm.q);
     std::size_t inside = 0;
-    std::array<double, kAxes> snr;
-    snr.fill(std::numeric_limits<double>::infinity());
+    std::array<std::vector<double>, kAxes> snr;
+    std::size_t outliers = 0;
     for (int k = 0; k < frm.line_count(); ++k) {
       for (int i = 0; i < kAxes; ++i) {
         for (int j = 0; j < kAxes; ++j) {
           inside += std::norm(frm.G[k](i, j) - truth(k, i, j)) <= quantile * frm.variance(k, i, j) ? 1 : 0;
         }
-        double& smallest = snr[static_cast<std::size_t>(i)];
-        smallest = std::min(smallest, 20.0 * std::log10(std::max(frm.input_snr[k](i, 0), 1e-15)));
+        // (|U| - s)/s is negative for an outlier; the median is not among those unless most lines are.
+        snr[static_cast<std::size_t>(i)].push_back(20.0 *
+                                                   std::log10(std::max(frm.input_snr[k](i, 0), 1e-15)));
+        outliers += frm.outlier[k](i, 0) != 0 ? 1 : 0;
       }
     }
     row.metrics.emplace_back(kInside95, static_cast<double>(inside) / (kAxes * kAxes * frm.line_count()));
-    for (std::size_t j = 0; j < snr.size(); ++j) row.metrics.emplace_back(kSmallestSnr[j], snr[j]);
+    row.metrics.emplace_back(kOutliers, static_cast<double>(outliers) / (kAxes * frm.line_count()));
+    for (std::size_t j = 0; j < snr.size(); ++j)
+      row.metrics.emplace_back(kMedianSnr[j], EmpiricalCdf(std::move(snr[j])).quantile(0.5));
   }
 
   void store_element(const Element& element, const FrmEstimate& frm, TrialRow& row) const {

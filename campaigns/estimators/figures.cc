@@ -7,6 +7,7 @@
 #include "campaigns/estimators/cell_runs.h"
 #include "campaigns/estimators/mean_error.h"
 #include "campaigns/estimators/summary.h"
+#include "campaigns/estimators/user_choices_figure.h"
 #include "core/accuracy/response_accuracy.h"
 #include "core/base/text.h"
 
@@ -90,6 +91,7 @@ StudyFigure figure_of(const CellRuns& cell, const std::string& id, bool decibel)
   const std::string condition = cell.name.empty() ? "linear" : cell.name;
   plot::Panel panel;
   panel.x.label = "f, Hz";
+  panel.x.range = plot::Range{cell.frequency_hz.front() - 0.03, cell.frequency_hz.back() + 0.03};
   panel.y.label = decibel ? "error of the magnitude, dB" : "error of the magnitude, %";
   for (const std::size_t e : kDrawn) decibel ? add_decibel(cell, e, panel) : add_scatter(cell, e, panel);
   if (decibel) {
@@ -128,6 +130,7 @@ Result<std::vector<StudyFigure>> figures(const CampaignSpec& spec, const RowSour
       if (cell.shown_in(decibel)) out.push_back(figure_of(cell, decibel, true));
     }
   }
+  if (auto choices = user_choices_figure(spec, *cells)) out.push_back(std::move(*choices));
   return out;
 }
 

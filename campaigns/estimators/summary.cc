@@ -136,6 +136,7 @@ void add_section_3_4_2(const CellRuns& cell, const std::vector<PublishedFigure>&
       }
       return 100.0 * largest;
     });
+    row.low = std::max(row.low, 0.0);
     judge_as_printed(printed_for(published, row), row);
     out.push_back(std::move(row));
   }
@@ -171,6 +172,7 @@ void add_user_choices(const CellRuns& cell, std::vector<TableRow>& out) {
     error.why = cell.failures();
     fill_mean(error, runs.relative_error, kPublishedRepetitions, 100.0);
     out.push_back(std::move(error));
+    if (e == 1) continue;
     add_share("Section 3.5", cell.name, label + ", lines whose own 90 % region holds the truth",
               runs.inside_90, kPublishedRepetitions, cell.trials, cell.failures(), {}, out);
   }

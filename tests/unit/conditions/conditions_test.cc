@@ -83,7 +83,8 @@ TrialRow row_of(std::uint32_t cell, std::uint64_t repetition, double error) {
     row.metrics.emplace_back(name_of(element, kRelativeError), std::abs(error));
   }
   row.metrics.emplace_back(kInside95, 1.0);
-  for (const auto name : kSmallestSnr) row.metrics.emplace_back(name, 20.0);
+  for (const auto name : kMedianSnr) row.metrics.emplace_back(name, 20.0);
+  row.metrics.emplace_back(kOutliers, 0.5);
   for (const char* servo : {"aileron", "left_ruddervator", "right_ruddervator"})
     row.metrics.emplace_back(std::string("share_at_rate_limit_") + servo, servo[0] == 'l' ? 0.25 : 0.0);
   return row;
@@ -112,6 +113,7 @@ TEST(ConditionSummary, LostFlightsAreCountedInEveryShare) {
   EXPECT_NE(lost.why.find("airspeed at 7 s"), std::string::npos);
   EXPECT_NEAR(find(*rows, cell, "share of 95 % regions that hold G0").value, 50.0, 1e-12);
   EXPECT_NEAR(find(*rows, cell, "rms of |error|/|G0|, q/η_c").value, 2.0, 1e-12);
+  EXPECT_NEAR(find(*rows, cell, "share of lines and inputs below 3 standard deviations").value, 50.0, 1e-12);
   EXPECT_NEAR(find(*rows, cell, "time that a servo stands at its rate limit").value, 25.0, 1e-12);
 }
 
