@@ -187,7 +187,7 @@ TEST(CandidatesTrial, TablesAndFiguresComeFromItsRows) {
   EXPECT_EQ(count, 8);  // n = 11 ... 18
   const auto drawn = figures(spec, rows);
   ASSERT_TRUE(drawn);
-  EXPECT_EQ(drawn->size(), 6U);
+  EXPECT_EQ(drawn->size(), 7U);
 }
 
 ModelRow model(int past, double agreement, double norm) {
@@ -200,11 +200,14 @@ TEST(Selection, BestByAgreementAloneAndBehindTheNormsLimit) {
                   model(50, 0.85, 1e-12)};
   table.models.push_back({60, 20, 12, ModelState::not_identified, 0.0, 0.0, 0.0, -1});
   table.models.push_back({20, 20, 18, ModelState::ok, 0.99, 1.0, 1e-12, -1});
-  const Selected selected = select(table, {12, 1e-10, 0.4});  // two of five, failures among them
+  const Selected selected = select(table, {12, 1e-10, 0.0, 0.4});  // two of five, failures among them
   EXPECT_EQ(selected.all, (std::vector<std::size_t>{1, 2, 3, 0}));
   EXPECT_EQ(selected.best, (std::vector<std::size_t>{1, 2}));
   EXPECT_EQ(selected.accepted, (std::vector<std::size_t>{2, 3, 0}));
   EXPECT_EQ(selected.candidates, (std::vector<std::size_t>{2, 3}));
+  const Selected quarter = select(table, {12, 0.0, 0.75, 0.4});  // of four that were identified
+  EXPECT_EQ(quarter.limit, 1e-3);
+  EXPECT_EQ(quarter.accepted, (std::vector<std::size_t>{2, 3, 0}));
 }
 
 }  // namespace
