@@ -17,7 +17,7 @@ MonitoredRun quiet(double flown_s, double onset_s) {
   run.onset_s = onset_s;
   run.flown_s = flown_s;
   run.csl.assign(epochs, 0.9);
-  run.csl_min.assign(epochs, 0.95);
+  run.robust.assign(epochs, 0.95);
   for (auto& noise : run.noise) noise.assign(epochs, -10.0);
   return run;
 }
@@ -34,7 +34,7 @@ TEST(AlarmStatistic, IsDefinedOnceTheWindowAndAQuarterAreFull) {
     EXPECT_FALSE(std::isnan(s[epoch_at(500.0)])) << name(detector);
   }
   EXPECT_NEAR(alarm_statistic(run, Detector::csl).back(), 0.1, 1e-15);
-  EXPECT_NEAR(alarm_statistic(run, Detector::csl_min).back(), 0.05, 1e-15);
+  EXPECT_NEAR(alarm_statistic(run, Detector::robust).back(), 0.05, 1e-15);
   EXPECT_EQ(alarm_statistic(run, Detector::noise_rise).back(), 0.0);
 }
 
@@ -83,7 +83,7 @@ TEST(CslFall, HasALevelBeforeATimeAndARecovery) {
   EXPECT_NEAR(fall.before, 0.9, 1e-12);
   EXPECT_EQ(fall.fall_s, 90.0);
   EXPECT_EQ(fall.recovery_s, 440.0);
-  const CslFall none = csl_fall(run, run.csl_min);
+  const CslFall none = csl_fall(run, run.robust);
   EXPECT_TRUE(std::isnan(none.fall_s) && std::isnan(none.recovery_s));
   const std::vector<double> nothing(run.epochs(), 0.01);
   EXPECT_TRUE(std::isnan(csl_fall(run, nothing).fall_s)) << "nothing to fall from";

@@ -82,9 +82,9 @@ TEST(ChangeTrial, IsAPureFunctionAndSeesASuddenChangeInTheNoise) {
   EXPECT_EQ(content_hash(row), content_hash((*cell)->run(3)));
   const std::vector<double>& noise = *row.array(kNoise[0]);
   ASSERT_EQ(noise.size(), 140u);
-  // Change at 450 s: epoch 44 ends there; 100 s later the window is a quarter new.
-  EXPECT_LT(std::abs(noise[44] - noise[40]), 1.0);
-  EXPECT_GT(noise[54] - noise[44], 2.0);
+  // Change at 600 s: epoch 59 ends there; 100 s later the window is a quarter new.
+  EXPECT_LT(std::abs(noise[59] - noise[49]), 0.7);
+  EXPECT_GT(noise[69] - noise[59], 2.0);
 }
 
 }  // namespace
