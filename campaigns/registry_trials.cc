@@ -1,15 +1,29 @@
 #include "campaigns/registry_trials.h"
 
 #include "campaigns/bias/trial.h"
+#include "campaigns/candidates/trial.h"
+#include "campaigns/conditions/trial.h"
 #include "campaigns/coverage/trial.h"
+#include "campaigns/dynamics_change/trial.h"
+#include "campaigns/estimators/trial.h"
+#include "campaigns/hidden_effect/trial.h"
 #include "campaigns/stability/trial.h"
 #include "campaigns/variance/trial.h"
 
 namespace fatmc {
 
 const std::vector<TrialStudy>& trial_studies() {
-  static const std::vector<TrialStudy> studies = {bias::kTrialStudy, coverage::kTrialStudy,
-                                                  stability::kTrialStudy, variance::kTrialStudy};
+  static const std::vector<TrialStudy> studies = {
+      bias::kTrialStudy,
+      coverage::kTrialStudy,
+      estimators::kTrialStudy,
+      conditions::kTrialStudy,
+      dynamics_change::kTrialStudy,
+      candidates::kTrialStudy,
+      hidden_effect::kTrialStudy,
+      stability::kTrialStudy,
+      variance::kTrialStudy,
+  };
   return studies;
 }
 

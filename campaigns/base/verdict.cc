@@ -98,6 +98,13 @@ void judge(TableRow& row, bool alike, std::string_view reason) {
 
 void judge_by_order(TableRow& row, std::string_view reason) { judge(row, same_order(row), reason); }
 
+void judge_upper_bound(TableRow& row, std::string_view reason) {
+  if (std::isnan(row.published)) return;
+  add_reason(row, "printed is a bound, less than");
+  if (!(row.low < row.published)) return judge(row, same_order(row), reason);
+  row.verdict = "match";
+}
+
 void judge_by_side(TableRow& row, double nominal, std::string_view reason) {
   judge(row, (row.published - nominal) * (row.value - nominal) > 0.0, reason);
 }

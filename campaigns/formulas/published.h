@@ -4,12 +4,9 @@
 
 #include <array>
 
-namespace fatmc::formulas {
+#include "campaigns/formulas/printed.h"
 
-struct Printed {
-  double value = 0.0;
-  int digits = 0;  ///< significant
-};
+namespace fatmc::formulas {
 
 struct EtfeBiasRow {
   const char* name;
@@ -38,10 +35,12 @@ inline constexpr std::array<EtfeBiasRow, 5> kTable21 = {{
 }};
 
 // Lines 1973-1979.
-inline constexpr std::array<OrderRow, 3> kTable23 = {{{2, {0.0857, 3}}, {4, {8.65e-6, 3}}, {6, {4.86e-9, 3}}}};
+inline constexpr std::array<OrderRow, 3> kTable23 = {
+    {{2, {0.0857, 3}}, {4, {8.65e-6, 3}}, {6, {4.86e-9, 3}}}};
 
 // Lines 2038-2043.
-inline constexpr std::array<OrderRow, 3> kTable24 = {{{2, {0.0318, 3}}, {4, {6.67e-3, 3}}, {6, {1.46e-3, 3}}}};
+inline constexpr std::array<OrderRow, 3> kTable24 = {
+    {{2, {0.0318, 3}}, {4, {6.67e-3, 3}}, {6, {1.46e-3, 3}}}};
 
 // Lines 3303-3311.
 inline constexpr std::array<ModeRow, 6> kTable31 = {{
@@ -52,5 +51,9 @@ inline constexpr std::array<ModeRow, 6> kTable31 = {{
     {"roll", {2.3, 2}, {1.0, 1}, {2.1, 2}, {0.48, 2}, true, false},
     {"actuators", {6.4, 2}, {0.9, 1}, {0.8, 1}, {1.2, 2}, false, false},
 }};
+
+// Lines 1932 (Fig. 2-17) and 3063 (Fig. 2-35).
+inline constexpr Printed kPeakOfFit{0.989, 3}, kPeakOfFitDb{-0.097, 2}, kPeakErrorPercent{1.1, 2};
+inline constexpr Printed kCoveredDamping{0.008, 1};
 
 }  // namespace fatmc::formulas

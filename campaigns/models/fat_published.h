@@ -47,20 +47,22 @@ struct TableEntry {
   double frequency_hz;
   double time_constant_s;
   double damping;
+  int frequency_digits = 2, time_digits = 2, damping_digits = 2;  ///< significant, as printed
+  bool bound = false;  ///< printed are "less than" (frequency) and "more than" (time)
 };
 inline constexpr std::array<TableEntry, 4> kTableA1 = {{
-    {"phugoid", 0.083, 12.2, 0.077},
-    {"T_theta1", 0.078, 12.9, 0.0},
+    {"phugoid", 0.083, 12.2, 0.077, 2, 3, 2},
+    {"T_theta1", 0.078, 12.9, 0.0, 2, 3, 0},
     {"short period", 0.48, 2.0, 0.67},
-    {"T_theta2", 0.486, 2.1, 0.0},
+    {"T_theta2", 0.486, 2.1, 0.0, 3, 2, 0},
 }};
 inline constexpr double kTheta1 = 2.0 * 3.14159265358979323846 * 0.078;  ///< rad/s, see above
 inline constexpr std::array<TableEntry, 5> kTableA2 = {{
-    {"spiral", 0.001, 1000.0, 1.0},  // printed as bounds: "< 0.001 Hz", "> 1000 s"
-    {"roll", 2.25, 0.44, 1.0},
+    {"spiral", 0.001, 1000.0, 1.0, 1, 1, 1, true},  // "< 0.001 Hz", "> 1000 s"
+    {"roll", 2.25, 0.44, 1.0, 3, 2, 1},
     {"Dutch roll", 0.33, 3.0, 0.18},
     {"r/xi_c zero", 0.32, 3.0, 0.0},  // printed as psi/xi_c: heading integrates r at theta near 0
-    {"r/zeta_c zeros", 0.05, 20.0, 0.199},
+    {"r/zeta_c zeros", 0.05, 20.0, 0.199, 1, 2, 3},
 }};
 
 }  // namespace fatmc::fat_published
