@@ -209,7 +209,7 @@ void Flight::fly_plant(PlantType plant, const Eigen::Ref<const Eigen::MatrixX3d>
   RandomStream imu_noise(trial, "imu");
   const bool windy = setup_.turbulence_m_s > 0.0;
   Dryden::StateVector air{};
-  if (windy) air = dryden_.start(gust_noise);
+  if (windy && !setup_.gusts_from_calm) air = dryden_.start(gust_noise);
   const AngleLimits angles(aircraft_.validity);
   LimitCount count;
   std::array<double, 3> square_sum{};
