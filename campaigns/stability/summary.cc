@@ -72,7 +72,8 @@ class CellTables {
     statistic("Section 5.4", "all lines", "lines with a median of nominal H-infinity below -10 dB", "", "%",
               "", below);
     statistic("Section 5.4", "all lines", "nominal H-infinity above ssv, mean over the lines", "", "dB",
-              "two structures of error: with a lag of the model the difference is 5 dB",
+              "errors of all elements alike: with a lag between G_n and the estimate, as for the row above, "
+              "it is 5 dB",
               [&](Picks picks) { return mean_excess_db(sorted_h, sorted_s, all_, picks); });
   }
 
@@ -146,7 +147,7 @@ class CellTables {
 
  private:
   static constexpr const char* kLagWhy =
-      "a nominal model without hold and one tick of delay, 1.5 ticks in all, would give -18 dB here";
+      "a lag of 1.5 to 2 ticks between G_n and the estimate would give -18 to -16 dB";
 
   // Fig. 5-8. That 25 % of the runs have p = 0 at three lines and that the 25 % quantile is 0.6 to 0.8 can hold at
   // different lines only: the quantile leaves those three out.

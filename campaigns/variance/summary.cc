@@ -6,6 +6,7 @@
 
 #include "campaigns/base/verdict.h"
 #include "campaigns/variance/element_runs.h"
+#include "core/ident/window_polynomial.h"
 
 namespace fatmc::variance {
 namespace {
@@ -62,7 +63,9 @@ class CellTables {
     for (const Border& border : kBorders) {
       const std::size_t edge = runs_.nearest_line(border.edge_hz),
                         inner = runs_.nearest_line(border.inner_hz);
-      const char* why = "noise rises or falls over the ten lines, too: campaigns/variance/README.md";
+      const char* why =
+          "print is the factor of one input; three inputs of random phases have 5.1 in white noise";
+      add_white_noise_factor(border.name);
       statistic("Section 4.3.3", border.name, "border factor, between runs", "", why,
                 [&, edge, inner](Picks picks) {
                   return mean_over_elements([&](std::size_t e) {
@@ -81,6 +84,28 @@ class CellTables {
   }
 
  private:
+  // What a fit of degree 2 through 21 even lines makes of white noise: |s|^2 of the constant row at the edge over that in the
+  // middle. With one input the covariance factor A is this; with several it hangs on their phases.
+  void add_white_noise_factor(const char* border) {
+    constexpr int kLines = 21, kOrder = 2;
+    const auto gain = [](int place) {
+      const double scale = std::max(place, kLines - 1 - place);
+      std::vector<double> scaled;
+      for (int i = 0; i < kLines; ++i) scaled.push_back((i - place) / scale);
+      double sum = 0.0;
+      for (const double s : window_polynomial(scaled, scale, kOrder).own_constant) sum += s * s;
+      return sum;
+    };
+    TableRow out = table_row("Section 4.3.3", border, "border factor, white noise, one input", "");
+    TableRow printed = out;
+    printed.quantity = "border factor, between runs";
+    out.published = published_value(published_, printed);
+    out.row += suffix_;
+    out.value = gain(0) / gain(kLines / 2);
+    judge_exact(out, 0.1, "noise rises towards low frequencies, and there are three inputs");
+    out_.push_back(std::move(out));
+  }
+
   void statistic(const std::string& table, const std::string& row, const std::string& quantity,
                  const std::string& unit, std::string_view why, const RunStatistic& of) {
     TableRow out = table_row(table, row, quantity, unit);
