@@ -10,18 +10,25 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
 /// Parameters are in units of their priors' spreads from here on.
-Aircraft aircraft_at(const Problem& problem, const Vector& x) {
-  Aircraft out = problem.start;
-  for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
-    const Parameter& p = problem.parameters[i];
-    p.of(out) = p.prior + p.spread * x[static_cast<Eigen::Index>(i)];
+Vector values_at(const ValueProblem& problem, const Vector& x) {
+  Vector out(x.size());
+  for (std::size_t i = 0; i < problem.priors.size(); ++i) {
+    const Prior& p = problem.priors[i];
+    out[static_cast<Eigen::Index>(i)] = p.value + p.spread * x[static_cast<Eigen::Index>(i)];
   }
   return out;
 }
 
+Aircraft aircraft_with(const Problem& problem, const Vector& values) {
+  Aircraft out = problem.start;
+  for (std::size_t i = 0; i < problem.parameters.size(); ++i)
+    problem.parameters[i].of(out) = values[static_cast<Eigen::Index>(i)];
+  return out;
+}
+
 /// Residuals of all targets.
-Vector residuals(const Problem& problem, const Vector& x) {
-  Vector out = problem.model(aircraft_at(problem, x));
+Vector residuals(const ValueProblem& problem, const Vector& x) {
+  Vector out = problem.model(values_at(problem, x));
   for (Eigen::Index i = 0; i < out.size(); ++i) {
     const Target& target = problem.targets[static_cast<std::size_t>(i)];
     out[i] = (out[i] - target.value) / target.tolerance;
@@ -30,7 +37,7 @@ Vector residuals(const Problem& problem, const Vector& x) {
 }
 
 /// Central differences, extrapolated once: error of fourth order.
-Matrix jacobian(const Problem& problem, const Vector& x) {
+Matrix jacobian(const ValueProblem& problem, const Vector& x) {
   constexpr double h = 1e-3;
   Matrix out(problem.targets.size(), x.size());
   for (Eigen::Index j = 0; j < x.size(); ++j) {
@@ -48,7 +55,7 @@ Matrix jacobian(const Problem& problem, const Vector& x) {
 
 /// Levenberg-Marquardt on targets and priors, exact targets weighted as `1/loosening`, until a step is below
 /// 1e-2.
-void approach(const Problem& problem, double loosening, Vector& x, Fit& fit) {
+void approach(const ValueProblem& problem, double loosening, Vector& x, ValueFit& fit) {
   constexpr int most_iterations = 100;
   Vector weight(problem.targets.size());
   for (std::size_t i = 0; i < problem.targets.size(); ++i) {
@@ -109,7 +116,7 @@ Matrix hessian(const F& f, const Vector& x) {
 
 /// Newton's method on L = 1/2 |x|^2 + 1/2 |soft|^2 + lambda' exact:
 ///   [H A'; A 0] [dx; lambda] = -[gradient; exact],  A = d(exact)/dx,  H = second derivatives of L.
-void finish(const Problem& problem, Vector& x, Fit& fit) {
+void finish(const ValueProblem& problem, Vector& x, ValueFit& fit) {
   constexpr int most_iterations = 30;
   constexpr double small_step = 1e-6;  // spreads; the noise of the differences is about 3e-7
   std::vector<Eigen::Index> exact;
@@ -152,13 +159,23 @@ void finish(const Problem& problem, Vector& x, Fit& fit) {
 
 }  // namespace
 
-Fit solve(const Problem& problem) {
-  Vector x = Vector::Zero(static_cast<Eigen::Index>(problem.parameters.size()));
-  Fit fit;
+ValueFit solve(const ValueProblem& problem) {
+  Vector x = Vector::Zero(static_cast<Eigen::Index>(problem.priors.size()));
+  ValueFit fit;
   for (const double loosening : {1e4, 1e3, 1e2, 1e1}) approach(problem, loosening, x, fit);
   finish(problem, x, fit);
-  fit.aircraft = aircraft_at(problem, x);
-  fit.reached = problem.model(fit.aircraft);
+  fit.values = values_at(problem, x);
+  fit.reached = problem.model(fit.values);
+  return fit;
+}
+
+Fit solve(const Problem& problem) {
+  ValueProblem values;
+  for (const Parameter& p : problem.parameters) values.priors.push_back({p.name, p.prior, p.spread});
+  values.targets = problem.targets;
+  values.model = [&](const Vector& at) { return problem.model(aircraft_with(problem, at)); };
+  Fit fit{solve(values), {}};
+  fit.aircraft = aircraft_with(problem, fit.values);
   return fit;
 }
 

@@ -10,6 +10,13 @@
 
 namespace fatmc::fit {
 
+/// A number that the fit may change, pulled towards what is plausible.
+struct Prior {
+  std::string name;
+  double value;
+  double spread;  ///< standard deviation
+};
+
 /// One number of the aircraft that the fit may change, pulled towards what such an aircraft plausibly has.
 struct Parameter {
   std::string name;
@@ -26,16 +33,15 @@ struct Target {
   bool exact = false;  ///< a constraint; the tolerance then is its scale alone
 };
 
-struct Problem {
-  Aircraft start;
-  std::vector<Parameter> parameters;
+struct ValueProblem {
+  std::vector<Prior> priors;
   std::vector<Target> targets;
-  /// Model values in the order of the targets.
-  std::function<Eigen::VectorXd(const Aircraft&)> model;
+  /// Model values in the order of the targets, from values in the order of the priors.
+  std::function<Eigen::VectorXd(const Eigen::VectorXd&)> model;
 };
 
-struct Fit {
-  Aircraft aircraft;
+struct ValueFit {
+  Eigen::VectorXd values;
   bool converged = false;
   int iterations = 0;
   double step = 0.0;        ///< last step in units of the priors' spreads
@@ -47,6 +53,21 @@ struct Fit {
 /// subject to model = value for the exact targets: Levenberg-Marquardt with the constraints as penalties
 /// comes near, Newton's method on the Lagrangian ends it. The priors choose among what the targets leave
 /// free.
+ValueFit solve(const ValueProblem& problem);
+
+/// The same for an aircraft.
+struct Problem {
+  Aircraft start;
+  std::vector<Parameter> parameters;
+  std::vector<Target> targets;
+  /// Model values in the order of the targets.
+  std::function<Eigen::VectorXd(const Aircraft&)> model;
+};
+
+struct Fit : ValueFit {
+  Aircraft aircraft;
+};
+
 Fit solve(const Problem& problem);
 
 }  // namespace fatmc::fit

@@ -38,6 +38,11 @@ std::string CampaignSpec::identity() const {
   meaning.set("cell", Tree{Tree::Array{}, {}, 0});
   meaning.set("published", Tree{std::string(), {}, 0});          // figures to compare with change no result
   for (const char* key : {"stop", "watch"}) meaning.erase(key);  // nor does when to stop
+  if (const Tree* table = meaning.find("campaign")) {
+    Tree campaign = *table;
+    campaign.erase("title");
+    meaning.set("campaign", std::move(campaign));
+  }
   std::string text = canonical_text(meaning) + "seed " + std::to_string(seed);
   for (const Cell& cell : cells) {
     Tree own = cell.tree;
@@ -98,6 +103,7 @@ Result<CampaignSpec> decode_campaign(const Tree& tree) {
     Decoder table(*campaign, "campaign");
     spec.study = table.text("study");
     spec.name = table.text("name", spec.study);
+    spec.title = table.text("title", spec.name);
     spec.seed = static_cast<std::uint64_t>(table.integer("seed", {.low = 0}));
     check_name(table, spec.name);
     top.take(table.finish());

@@ -3,6 +3,7 @@
 //   [campaign]
 //   study = "coverage"
 //   name = "coverage"            # the default database is results/<name>.db
+//   title = "Coverage (5.3)"     # heading in the report; default: the name
 //   seed = 2018
 //
 //   [[cell]]
@@ -43,7 +44,7 @@ struct Cell {
 
 struct CampaignSpec {
   std::string study;
-  std::string name;
+  std::string name, title;
   std::uint64_t seed = 0;
   std::vector<Cell> cells;
   std::vector<Dispersion> dispersions;
@@ -57,8 +58,8 @@ struct CampaignSpec {
   [[nodiscard]] std::uint64_t index(TrialKey trial_key) const;
   /// Seeds of a trial: by the names of study and cell, so that renumbering cells moves nothing.
   [[nodiscard]] TrialSeed trial_seed(TrialKey trial_key) const;
-  /// SHA-256 of everything that can change a result: numbers of repetitions, priorities, `stop`, `watch` and
-  /// `published` cannot.
+  /// SHA-256 of everything that can change a result: numbers of repetitions, priorities, the title, `stop`,
+  /// `watch` and `published` cannot.
   [[nodiscard]] std::string identity() const;
 };
 

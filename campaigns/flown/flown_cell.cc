@@ -59,8 +59,8 @@ Result<FlownCell> decode_flown_cell(const CampaignSpec& spec, std::uint32_t cell
   FlownCell out;
   auto aircraft = decode_aircraft_model(*model);
   if (!aircraft) return fail(aircraft.error());
-  out.aircraft = aircraft->aircraft;
-  auto decoded = decode_experiment(*experiment, *aircraft);
+  out.model = std::move(*aircraft);
+  auto decoded = decode_experiment(*experiment, out.model);
   if (!decoded) return fail(decoded.error());
   out.experiment = std::move(*decoded);
   if (Status status = apply_overrides(spec.cells.at(cell).tree, own_keys, out.experiment); !status)

@@ -12,6 +12,7 @@
 #include <span>
 #include <string_view>
 
+#include "campaigns/base/aircraft_model.h"
 #include "campaigns/base/campaign_spec.h"
 #include "campaigns/base/experiment.h"
 #include "core/base/error.h"
@@ -21,7 +22,7 @@
 namespace fatmc {
 
 struct FlownCell {
-  Aircraft aircraft;
+  AircraftModel model;
   Experiment experiment;
   LpmOptions estimator;
   bool speed_correction = true;

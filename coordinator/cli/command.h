@@ -23,6 +23,7 @@ Exit report(const Error& error);
 
 void add_linearize_command(CLI::App& app, Exit& exit);
 void add_simulate_command(CLI::App& app, Exit& exit);
+void add_diagnose_command(CLI::App& app, Exit& exit);
 void add_design_command(CLI::App& app, Exit& exit);
 void add_noise_command(CLI::App& app, Exit& exit);
 void add_estimate_command(CLI::App& app, Exit& exit);
@@ -36,6 +37,7 @@ void add_digest_command(CLI::App& app, Exit& exit);
 void add_merge_command(CLI::App& app, Exit& exit);
 void add_migrate_command(CLI::App& app, Exit& exit);
 void add_tables_command(CLI::App& app, Exit& exit);
+void add_report_command(CLI::App& app, Exit& exit);
 void add_replay_command(CLI::App& app, Exit& exit);
 void add_pause_command(CLI::App& app, Exit& exit);
 void add_resume_command(CLI::App& app, Exit& exit);

@@ -13,6 +13,11 @@ Exit print_digest(const std::string& path) {
   const Result<CampaignReader> reader = CampaignReader::open(path);
   if (!reader) return report(reader.error());
   std::printf("%s\n", reader->digest().c_str());
+  const std::uint64_t stored = reader->stored(), planned = reader->spec().trial_count();
+  if (stored < planned) {
+    std::fprintf(stderr, "fatmc: note: %s: partial, %llu of %llu trials are stored: the digest is theirs alone\n",
+                 path.c_str(), static_cast<unsigned long long>(stored), static_cast<unsigned long long>(planned));
+  }
   return Exit::done;
 }
 

@@ -1,19 +1,13 @@
 // fatmc tables: published figures beside ours, from formulas and from databases that exist.
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 
-#include "campaigns/base/aircraft_model.h"
-#include "campaigns/formulas/aircraft_formulas.h"
-#include "campaigns/formulas/formula_tables.h"
-#include "campaigns/registry_summaries.h"
 #include "coordinator/cli/command.h"
 #include "coordinator/cli/database_use.h"
-#include "coordinator/input/toml_file.h"
+#include "coordinator/cli/formula_results.h"
+#include "coordinator/cli/study_results.h"
 #include "coordinator/report/tables.h"
-#include "coordinator/store/campaign_store.h"
 
 namespace fatmc::cli {
 namespace {
@@ -23,35 +17,6 @@ struct Options {
   std::string only;
   std::string format = "text";
 };
-
-// The databases of the last run stand in results/last, one a line; none where nothing has run yet.
-std::vector<std::string> last_databases() {
-  std::ifstream in("results/last");
-  std::vector<std::string> out;
-  for (std::string line; std::getline(in, line);) {
-    if (!line.empty()) out.push_back(line);
-  }
-  return out;
-}
-
-// Tables belong to the FAT; none where its file is not here (another working directory) or has been changed
-// into something else.
-std::vector<TableRow> tables_of_fat() {
-  const auto tree = read_toml("campaigns/models/fat.toml");
-  if (!tree) return {};
-  const auto model = decode_aircraft_model(*tree);
-  if (!model || model->aircraft.name != "FAT") return {};
-  auto rows = aircraft_tables(*model);
-  return rows ? std::move(*rows) : std::vector<TableRow>{};
-}
-
-Result<std::vector<TableRow>> rows_of(const std::string& path) {
-  auto reader = CampaignReader::open(path);
-  if (!reader) return fail(reader.error());
-  const SummaryStudy* study = find_summary_study(reader->spec().study);
-  if (study == nullptr) return std::vector<TableRow>{};
-  return study->tables(reader->spec(), reader->rows());
-}
 
 std::vector<std::string> names_of(const std::vector<TableRow>& rows) {
   std::vector<std::string> names;
@@ -72,9 +37,7 @@ std::string full_name(const std::vector<std::string>& known, const std::string& 
 
 Exit run(const Options& options) {
   std::vector<std::string> databases = options.databases;
-  std::vector<TableRow> rows = formula_tables();
-  const std::vector<TableRow> aircraft = tables_of_fat();
-  rows.insert(rows.end(), aircraft.begin(), aircraft.end());
+  std::vector<TableRow> rows = tables_without_database();
   if (!options.only.empty() && !full_name(names_of(rows), options.only).empty()) {
     databases.clear();  // a formula table needs no database, not even one that cannot be read
   } else if (databases.empty()) {
@@ -84,7 +47,9 @@ Exit run(const Options& options) {
   }
   for (const std::string& path : databases) {
     const Exit exit = use_database(path, [&] {
-      const auto more = rows_of(path);
+      const auto database = StudyDatabase::open(path);
+      if (!database) return report(database.error());
+      const auto more = database->tables();
       if (!more) return report(more.error());
       rows.insert(rows.end(), more->begin(), more->end());
       return Exit::done;

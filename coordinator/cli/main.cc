@@ -18,12 +18,14 @@ int run(int argc, char** argv) {
   add_merge_command(app, exit);
   add_migrate_command(app, exit);
   add_tables_command(app, exit);
+  add_report_command(app, exit);
   add_replay_command(app, exit);
   add_pause_command(app, exit);
   add_resume_command(app, exit);
   add_extend_command(app, exit);
   add_explain_command(app, exit);
   add_linearize_command(app, exit);
+  add_diagnose_command(app, exit);
   add_design_command(app, exit);
   add_simulate_command(app, exit);
   add_estimate_command(app, exit);

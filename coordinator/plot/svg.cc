@@ -28,54 +28,6 @@ constexpr std::array<Colours, 6> kHues = {{{"#0068a8", "#63b3ed"},
                                            {"#b3261e", "#ff8a80"},
                                            {"#5f6368", "#a8adb3"}}};
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        if (static_cast<unsigned char>(c) >= 0x20) out += c;  // control characters are no XML
-    }
-  }
-  return out;
-}
-
-std::string style() {
-  std::string out =
-      "<style>\n"
-      "text{font:12px system-ui,'DejaVu Sans',sans-serif;fill:#202124}\n"
-      ".h{font-size:14px;font-weight:600}.b{font-weight:600}.m{text-anchor:middle}.e{text-anchor:end}.n{fill:"
-      "#5f6368}\n"
-      ".ground{fill:#ffffff}.frame{fill:none;stroke:#80868b}.grid{fill:none;stroke:#dadce0}.fine{fill:none;"
-      "stroke:#eeeff1}\n"
-      ".line{fill:none;stroke-width:1.5;stroke-linejoin:round}.thin{fill:none;stroke-width:1}.band{opacity:."
-      "25}.bar{opacity:.6}\n"
-      ".ring{fill:none;stroke-width:1.2}.dash{stroke-dasharray:6 4}.dot{stroke-dasharray:1.5 3}\n";
-  std::string dark;
-  for (std::size_t k = 0; k < kHues.size(); ++k) {
-    const std::string number = std::to_string(k);
-    out += ".s" + number + "{stroke:" + kHues[k].light + "}.f" + number + "{fill:" + kHues[k].light + "}\n";
-    dark += ".s" + number + "{stroke:" + kHues[k].dark + "}.f" + number + "{fill:" + kHues[k].dark + "}\n";
-  }
-  return out +
-         "@media (prefers-color-scheme:dark){\n"
-         "text{fill:#e8eaed}.n{fill:#a8adb3}.ground{fill:#17181a}.frame{stroke:#80868b}.grid{stroke:#3c4043}."
-         "fine{stroke:#2a2c2f}\n"
-         ".band{opacity:.35}\n" +
-         dark + "}\n</style>\n";
-}
-
 std::string text_at(double x, double y, const std::string& classes, const std::string& text) {
   return "<text class=\"" + classes + "\" x=\"" + px(x) + "\" y=\"" + px(y) + "\">" + escaped(text) +
          "</text>\n";
@@ -115,13 +67,13 @@ std::string tick_texts(const AxisScale& x, const AxisScale& y, const Box& box) {
   return out;
 }
 
-std::string panel_svg(const Panel& panel, double left, double top, double width, double height, int number) {
+std::string panel_svg(const Panel& panel, double left, double top, double width, double height,
+                      const std::string& clip) {
   const Box box{left + kLeft, top + kTop, left + width - kRight,
                 top + height - kBottom - (panel.x.label.empty() ? 0.0 : kLabel)};
   FATMC_CHECK(box.right > box.left && box.bottom > box.top, "a panel larger than its axes");
   const AxisScale x(panel.x, axis_range(panel, false), box.left, box.right),
       y(panel.y, axis_range(panel, true), box.bottom, box.top);
-  const std::string clip = "clip" + std::to_string(number);
   const std::string rectangle = "x=\"" + px(box.left) + "\" y=\"" + px(box.top) + "\" width=\"" +
                                 px(box.right - box.left) + "\" height=\"" + px(box.bottom - box.top) + "\"/>";
   std::string out = "<clipPath id=\"" + clip + "\"><rect " + rectangle + "</clipPath>\n" + grid(x, y, box);
@@ -172,12 +124,13 @@ std::string legend(const Figure& figure, double top, double width, double& heigh
   return out;
 }
 
-}  // namespace
-
-std::string svg_of(const Figure& figure) {
+std::string document(const Figure& figure, const std::string& style, const std::string& id) {
   FATMC_CHECK(figure.columns >= 1 && !figure.panels.empty(), "a grid of panels");
   const int rows = (static_cast<int>(figure.panels.size()) + figure.columns - 1) / figure.columns;
-  const double width = figure.columns * figure.panel_width + kEdge;
+  // A title or a note that is longer than the panels are wide is not cut off.
+  const double width = std::max({figure.columns * figure.panel_width + kEdge,
+                                 1.25 * kCharacter * letters(figure.title) + 2.0 * kEdge,
+                                 kCharacter * letters(figure.note) + 2.0 * kEdge});
   double top = kEdge;
   std::string body;
   if (!figure.title.empty()) {
@@ -194,12 +147,67 @@ std::string svg_of(const Figure& figure) {
   for (std::size_t k = 0; k < figure.panels.size(); ++k) {
     const auto row = static_cast<int>(k) / figure.columns, column = static_cast<int>(k) % figure.columns;
     body += panel_svg(figure.panels[k], column * figure.panel_width, top + row * figure.panel_height,
-                      figure.panel_width, figure.panel_height, static_cast<int>(k));
+                      figure.panel_width, figure.panel_height, id + "clip" + std::to_string(k));
   }
   const std::string w = px(width), h = px(top + rows * figure.panel_height + kEdge);
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + w + "\" height=\"" + h + "\" viewBox=\"0 0 " +
-         w + " " + h + "\" role=\"img\">\n<title>" + escaped(figure.title) + "</title>\n" + style() +
+         w + " " + h + "\" role=\"img\">\n<title>" + escaped(figure.title) + "</title>\n" + style +
          "<rect class=\"ground\" width=\"" + w + "\" height=\"" + h + "\"/>\n" + body + "</svg>\n";
 }
+
+}  // namespace
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        if (static_cast<unsigned char>(c) >= 0x20) out += c;  // control characters are no XML
+    }
+  }
+  return out;
+}
+
+std::string svg_style() {
+  std::string out =
+      "text{font:12px system-ui,'DejaVu Sans',sans-serif;fill:#202124}\n"
+      ".h{font-size:14px;font-weight:600}.b{font-weight:600}.m{text-anchor:middle}.e{text-anchor:end}.n{fill:"
+      "#5f6368}\n"
+      ".ground{fill:#ffffff}.frame{fill:none;stroke:#80868b}.grid{fill:none;stroke:#dadce0}.fine{fill:none;"
+      "stroke:#eeeff1}\n"
+      ".line{fill:none;stroke-width:1.5;stroke-linejoin:round}.thin{fill:none;stroke-width:1}.band{opacity:."
+      "25}.bar{opacity:.6}\n"
+      ".ring{fill:none;stroke-width:1.2}.dash{stroke-dasharray:6 4}.dot{stroke-dasharray:1.5 3}\n";
+  std::string dark;
+  for (std::size_t k = 0; k < kHues.size(); ++k) {
+    const std::string number = std::to_string(k);
+    out += ".s" + number + "{stroke:" + kHues[k].light + "}.f" + number + "{fill:" + kHues[k].light + "}\n";
+    dark += ".s" + number + "{stroke:" + kHues[k].dark + "}.f" + number + "{fill:" + kHues[k].dark + "}\n";
+  }
+  return out +
+         "@media (prefers-color-scheme:dark){\n"
+         "text{fill:#e8eaed}.n{fill:#a8adb3}.ground{fill:#17181a}.frame{stroke:#80868b}.grid{stroke:#3c4043}."
+         "fine{stroke:#2a2c2f}\n"
+         ".band{opacity:.35}\n" +
+         dark + "}\n";
+}
+
+std::string svg_of(const Figure& figure) {
+  return document(figure, "<style>\n" + svg_style() + "</style>\n", "");
+}
+
+std::string inline_svg(const Figure& figure, const std::string& id) { return document(figure, "", id + "-"); }
 
 }  // namespace fatmc::plot

@@ -5,9 +5,8 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
-#include "core/base/text.h"
+#include "coordinator/report/table_text.h"
 
 namespace fatmc {
 namespace {
@@ -16,18 +15,6 @@ constexpr std::size_t kColumns = 8;
 using Line = std::array<std::string, kColumns>;
 const Line kHeader = {"row", "quantity", "unit", "published", "ours", "95 % interval", "n", "verdict"};
 constexpr std::array<bool, kColumns> kIsNumber = {false, false, false, true, true, true, true, false};
-
-// Shares and decibels to a tenth, small decibels to two digits, all else to four.
-std::string number(double value, const std::string& unit) {
-  if (!std::isfinite(value)) return "-";
-  if (unit == "dB" && value != 0.0 && std::abs(value) < 1.0) return significant(value, 2);
-  return unit == "%" || unit == "dB" ? fixed(value, 1) : significant(value, 4);
-}
-
-std::string interval(const TableRow& row) {
-  if (!std::isfinite(row.low) && !std::isfinite(row.high)) return "-";
-  return number(row.low, row.unit) + " to " + number(row.high, row.unit);
-}
 
 // Characters, not bytes, of UTF-8.
 std::size_t width(const std::string& text) {
@@ -61,38 +48,31 @@ std::string rule(const std::array<std::size_t, kColumns>& widths) {
 std::string format_table(const std::vector<TableRow>& rows, TableFormat format) {
   const bool markdown = format == TableFormat::markdown;
   std::vector<Line> lines = {kHeader};
-  std::vector<std::string> reasons;
+  Reasons reasons;
   const TableRow* above = nullptr;
   for (const TableRow& row : rows) {
     std::string verdict = row.verdict;
-    if (!row.why.empty()) {
-      auto reason = std::find(reasons.begin(), reasons.end(), row.why);
-      if (reason == reasons.end()) reason = reasons.insert(reasons.end(), row.why);
-      verdict += (verdict.empty() ? "[" : " [") + std::to_string(reason - reasons.begin() + 1) + "]";
+    if (const int reason = reasons.number_of(row)) {
+      verdict += (verdict.empty() ? "[" : " [") + std::to_string(reason) + "]";
     }
     const bool repeated = above != nullptr && above->row == row.row && !markdown;
-    lines.push_back({repeated ? "" : row.row, row.quantity, row.unit, number(row.published, row.unit),
-                     number(row.value, row.unit), interval(row), row.n > 0 ? std::to_string(row.n) : "-",
-                     verdict});
+    lines.push_back({repeated ? "" : row.row, row.quantity, row.unit, table_number(row.published, row.unit),
+                     table_number(row.value, row.unit), table_interval(row),
+                     row.n > 0 ? std::to_string(row.n) : "-", verdict});
     above = &row;
   }
   std::array<std::size_t, kColumns> widths{};
   for (const Line& cells : lines) {
     for (std::size_t i = 0; i < kColumns; ++i) widths[i] = std::max(widths[i], width(cells[i]));
   }
-  // "Table 5-5", but "Fig. 5-4" and "Section 5.2.3" speak for themselves.
-  const std::string& name = rows.front().table;
-  const bool bare =
-      !name.empty() && std::string_view("0123456789ABC").find(name.front()) != std::string_view::npos;
-  std::string out =
-      (markdown ? "### " : "") + std::string(bare ? "Table " : "") + name + (markdown ? "\n\n" : "\n");
+  std::string out = (markdown ? "### " : "") + table_heading(rows.front().table) + (markdown ? "\n\n" : "\n");
   for (std::size_t i = 0; i < lines.size(); ++i) {
     out += join_line(lines[i], widths, format);
     if (i == 0 && markdown) out += rule(widths);
   }
-  if (markdown && !reasons.empty()) out += "\n";
-  for (std::size_t i = 0; i < reasons.size(); ++i) {
-    out += (markdown ? "" : "  ") + ("[" + std::to_string(i + 1) + "] ") + reasons[i] +
+  if (markdown && !reasons.texts().empty()) out += "\n";
+  for (std::size_t i = 0; i < reasons.texts().size(); ++i) {
+    out += (markdown ? "" : "  ") + ("[" + std::to_string(i + 1) + "] ") + reasons.texts()[i] +
            (markdown ? "  \n" : "\n");
   }
   return out;
@@ -123,13 +103,8 @@ std::string format_json(const std::vector<TableRow>& rows) {
 
 std::string format_tables(const std::vector<TableRow>& rows, TableFormat format) {
   if (format == TableFormat::json) return format_json(rows);
-  std::vector<std::vector<TableRow>> tables;
-  for (const TableRow& row : rows) {
-    if (tables.empty() || tables.back().front().table != row.table) tables.emplace_back();
-    tables.back().push_back(row);
-  }
   std::string out;
-  for (const std::vector<TableRow>& table : tables)
+  for (const std::vector<TableRow>& table : tables_of(rows))
     out += (out.empty() ? "" : "\n") + format_table(table, format);
   return out;
 }

@@ -25,6 +25,13 @@ Status check(const Aircraft& a) {
       a.iyy_kg_m2 + a.izz_kg_m2 < a.ixx_kg_m2) {
     return wrong("mass.izz_kg_m2", "one moment of inertia exceeds the sum of the others, which no body has");
   }
+  const std::array<double, 3> effective = {a.ixx_kg_m2 + a.apparent_inertia_kg_m2[0],
+                                           a.iyy_kg_m2 + a.apparent_inertia_kg_m2[1],
+                                           a.izz_kg_m2 + a.apparent_inertia_kg_m2[2]};
+  if (!(effective[0] > 0.0 && effective[1] > 0.0 &&
+        effective[0] * effective[2] > a.ixz_kg_m2 * a.ixz_kg_m2)) {
+    return wrong("mass.ixx_kg_m2", "with the apparent inertia it is not positive; write a larger one");
+  }
   if (a.validity.alpha_min_rad >= a.validity.alpha_max_rad) {
     return wrong("validity.alpha_min_deg", "is not below alpha_max_deg");
   }

@@ -10,7 +10,8 @@
 //   C_i = C_ibeta sin(beta) + C_ip p^ + C_ir r^ + C_ixi xi + C_izeta zeta     for i in {Y, l, n}
 // Drag acts against the air-relative velocity, lift perpendicular to it in the plane of symmetry, the side
 // force along y_b, the moments about body axes. Side-slip enters as v/V, which saves an arc sine and differs
-// from beta by beta^3/6. The aircraft is symmetric left to right: no propeller torque and no gyroscopics.
+// from beta by beta^3/6. The aircraft is symmetric left to right: no propeller torque, and gyroscopics only as
+// an addition (additional_physics.h).
 //
 // Surfaces: xi the aileron; left and right ruddervator give eta = (right + left)/2 and zeta = (right -
 // left)/2. Positive deflections give negative moments (LN 9300), so that a positive command deflects
@@ -22,6 +23,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/flight/additional_physics.h"
 
 namespace fatmc {
 
@@ -38,6 +40,7 @@ struct LateralDerivatives {
   double r = 0.0;     ///< per r b/(2V)
   double xi = 0.0;    ///< 1/rad
   double zeta = 0.0;  ///< 1/rad
+  bool operator==(const LateralDerivatives&) const = default;
 };
 
 /// Derivatives of lift or pitching moment.
@@ -46,6 +49,7 @@ struct LongitudinalDerivatives {
   double alpha = 0.0;  ///< 1/rad
   double q = 0.0;      ///< per q c/(2V)
   double eta = 0.0;    ///< 1/rad
+  bool operator==(const LongitudinalDerivatives&) const = default;
 };
 
 /// Electric motor and propeller.
@@ -63,6 +67,7 @@ struct Propulsion {
   std::array<double, 3> torque{};   ///< C_Q, likewise
   double stall_torque_n_m = 0.0;    ///< Q_stall at full throttle
   double torque_slope_n_m_s = 0.0;  ///< Q_n, per revolution a second
+  bool operator==(const Propulsion&) const = default;
 };
 
 /// A second-order servo: d2x/dt2 = w^2 (x_c - x) - 2 d w dx/dt, limited in position, rate and acceleration.
@@ -72,6 +77,7 @@ struct Actuator {
   double position_limit_rad = 0.0;  ///< symmetric
   double rate_limit_rad_s = 0.0;
   double acceleration_limit_rad_s2 = 0.0;
+  bool operator==(const Actuator&) const = default;
 };
 
 /// Where the model may be believed; a flight that leaves it has diverged.
@@ -83,6 +89,7 @@ struct Validity {
   double pitch_max_rad = 0.0;  ///< of |theta|
   double speed_min_m_s = 0.0;  ///< of the airspeed
   double speed_max_m_s = 0.0;
+  bool operator==(const Validity&) const = default;
 };
 
 struct Aircraft {
@@ -90,9 +97,12 @@ struct Aircraft {
   // mass and geometry
   double mass_kg = 0.0;
   double ixx_kg_m2 = 0.0, iyy_kg_m2 = 0.0, izz_kg_m2 = 0.0, ixz_kg_m2 = 0.0;  ///< ixz = integral of x z dm
-  double wing_area_m2 = 0.0;                                                  ///< S
-  double span_m = 0.0;                                                        ///< b
-  double chord_m = 0.0;                                                       ///< c
+  /// Added to ixx, iyy, izz: of the air that moves with the body (apparent inertia), or what the model has wrong. The sums
+  /// need not be those of a rigid body.
+  std::array<double, 3> apparent_inertia_kg_m2{};
+  double wing_area_m2 = 0.0;  ///< S
+  double span_m = 0.0;        ///< b
+  double chord_m = 0.0;       ///< c
   // flight condition
   double altitude_m = 0.0;  ///< fixes the density, which is then constant
   double speed_m_s = 0.0;   ///< of trim
@@ -106,6 +116,8 @@ struct Aircraft {
   Actuator aileron, ruddervator;
   double full_command_rad = 0.0;  ///< deflection of a command of 1 (each ruddervator for pitch and yaw alike)
   Validity validity;
+  AdditionalPhysics additional;  ///< beyond the above; none by default
+  bool operator==(const Aircraft&) const = default;
 };
 
 /// Wrong by physics, not by type or range (inertia that no body has, limits in the wrong order).

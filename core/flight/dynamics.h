@@ -4,7 +4,8 @@
 //   I dw/dt + w x I w = M_aero                                  w: (p, q, r), I with the product ixz
 //   dQ/dt = 1/2 Q * (0, w)                                      Q: attitude of b in n as a unit quaternion
 // Aerodynamic forces see the velocity v - v_g and the rates w - w_g relative to the air (gusts v_g, w_g);
-// thrust sees u - u_g. An extra force or moment belongs where `force` and `moment` are summed.
+// thrust sees u - u_g. Physics beyond the
+// rigid aircraft enter through the hooks of `Dynamics`.
 #pragma once
 
 #include <algorithm>
@@ -66,9 +67,37 @@ struct FlightConstants {
   double full_command;
 };
 
-/// Third row of R_nb: the direction of down, in body axes.
+/// Flow around the aircraft, relative to the air, at its aerodynamic reference point.
 template <typename T>
-std::array<T, 3> down_in_body(const State<T>& x) {
+struct Flow {
+  T alpha, sin_beta, p_hat, q_hat, r_hat;
+  T pressure_area;  ///< rho V^2 S / 2
+};
+
+/// The rigid, symmetric aircraft and nothing else: hooks of derivative() that do nothing. What there may be
+/// besides: additional_dynamics.h.
+struct RigidDynamics {
+  static constexpr std::size_t states = state::size;
+  void start(const std::array<double, 3>&) {}
+  template <typename T, std::size_t N>
+  T surface(const std::array<T, N>& x, std::size_t i) const {
+    return x[state::surfaces + i];
+  }
+  template <typename T, std::size_t N>
+  void shift_air(const std::array<T, N>&, T&, T&, T&) const {}
+  template <typename T, std::size_t N>
+  void load(const FlightConstants&, const Flow<T>&, const std::array<T, N>&, const std::array<T, 3>&,
+            std::array<T, 3>&) const {}
+  template <typename T, std::size_t N>
+  void react(const FlightConstants&, const std::array<T, N>&, const std::array<T, 3>&,
+             std::array<T, N>&) const {}
+  template <std::size_t N>
+  void settle(const std::array<double, N>&) {}
+};
+
+/// Third row of R_nb: the direction of down, in body axes.
+template <typename T, std::size_t N>
+std::array<T, 3> down_in_body(const std::array<T, N>& x) {
   const T& w = x[0];
   const T& i = x[1];
   const T& j = x[2];
@@ -95,10 +124,10 @@ inline T limited(const T& value, double limit) {
 }
 }  // namespace internal
 
-/// dx/dt.
-template <typename T>
-inline void derivative(const FlightConstants& k, const State<T>& x, const Demand<T>& demand,
-                       const Gust<T>& gust, State<T>& dx) {
+/// dx/dt, of State<T> or of a state with the additional entries that `dynamics` knows.
+template <typename T, std::size_t N, typename Dynamics = RigidDynamics>
+inline void derivative(const FlightConstants& k, const std::array<T, N>& x, const Demand<T>& demand,
+                       const Gust<T>& gust, std::array<T, N>& dx, const Dynamics& dynamics = {}) {
   using std::atan;
   using std::sqrt;
   constexpr std::size_t v0 = state::velocity;
@@ -111,9 +140,10 @@ inline void derivative(const FlightConstants& k, const State<T>& x, const Demand
   const T& r = x[w0 + 2];
 
   // relative to the air
-  const T ua = u - gust.velocity[0];
-  const T va = v - gust.velocity[1];
-  const T wa = w - gust.velocity[2];
+  T ua = u - gust.velocity[0];
+  T va = v - gust.velocity[1];
+  T wa = w - gust.velocity[2];
+  dynamics.shift_air(x, ua, va, wa);
   const T pa = p - gust.rates[0];
   const T qa = q - gust.rates[1];
   const T ra = r - gust.rates[2];
@@ -126,9 +156,11 @@ inline void derivative(const FlightConstants& k, const State<T>& x, const Demand
   const T q_hat = qa * (k.half_chord * inverse_speed);
   const T r_hat = ra * (k.half_span * inverse_speed);
 
-  const T& xi = x[state::surfaces];
-  const T eta = 0.5 * (x[state::surfaces + 2] + x[state::surfaces + 1]);
-  const T zeta = 0.5 * (x[state::surfaces + 2] - x[state::surfaces + 1]);
+  const T xi = dynamics.surface(x, 0);
+  const T left = dynamics.surface(x, 1);
+  const T right = dynamics.surface(x, 2);
+  const T eta = 0.5 * (right + left);
+  const T zeta = 0.5 * (right - left);
   const auto lateral = [&](const LateralDerivatives& c) {
     return T(c.beta * sin_beta + c.p * p_hat + c.r * r_hat + c.xi * xi + c.zeta * zeta);
   };
@@ -144,9 +176,9 @@ inline void derivative(const FlightConstants& k, const State<T>& x, const Demand
   const T thrust = (k.thrust[0] * n + k.thrust[1] * ua) * n + k.thrust[2] * (ua * ua);
   const std::array<T, 3> force = {thrust - drag * ua + lift * wa, qs * lateral(k.side) - drag * va,
                                   -(drag * wa) - lift * ua};
-  const std::array<T, 3> moment = {qs * k.span * lateral(k.roll),
-                                   qs * k.chord * cm - k.thrust_offset * thrust,
-                                   qs * k.span * lateral(k.yaw)};
+  std::array<T, 3> moment = {qs * k.span * lateral(k.roll), qs * k.chord * cm - k.thrust_offset * thrust,
+                             qs * k.span * lateral(k.yaw)};
+  dynamics.load(k, Flow<T>{alpha, sin_beta, p_hat, q_hat, r_hat, qs}, x, force, moment);
 
   const std::array<T, 3> down = down_in_body(x);
   dx[v0] = force[0] * k.inverse_mass + kGravity * down[0] + r * v - q * w;
@@ -182,12 +214,13 @@ inline void derivative(const FlightConstants& k, const State<T>& x, const Demand
     dx[state::surface_rates + i] = internal::limited(wanted, k.acceleration_limit[i]);
   }
   dx[state::size - 1] = T(0.0);
+  dynamics.react(k, x, force, dx);
 }
 
 /// Holds the servos inside their rate and position stops and the quaternion on the unit sphere, after a step.
 /// A servo that has met its position stop stands still.
-template <typename T>
-inline void enforce_limits(const FlightConstants& k, State<T>& x) {
+template <typename T, std::size_t N>
+inline void enforce_limits(const FlightConstants& k, std::array<T, N>& x) {
   for (std::size_t i = 0; i < 3; ++i) {
     T& position = x[state::surfaces + i];
     T& rate = x[state::surface_rates + i];
@@ -208,29 +241,29 @@ inline void enforce_limits(const FlightConstants& k, State<T>& x) {
 
 /// One classical fourth-order Runge-Kutta step of h seconds (Simulink's ode4, T 3.2.4) with demands and gusts
 /// held.
-template <typename T>
+template <typename T, std::size_t N, typename Dynamics = RigidDynamics>
 inline void rk4_step(const FlightConstants& k, const Demand<T>& demand, const Gust<T>& gust, double h,
-                     State<T>& x) {
-  State<T> slope;
-  State<T> sum;
-  State<T> at;
-  derivative(k, x, demand, gust, slope);
-  for (std::size_t i = 0; i < state::size; ++i) {
+                     std::array<T, N>& x, const Dynamics& dynamics = {}) {
+  std::array<T, N> slope;
+  std::array<T, N> sum;
+  std::array<T, N> at;
+  derivative(k, x, demand, gust, slope, dynamics);
+  for (std::size_t i = 0; i < N; ++i) {
     sum[i] = slope[i];
     at[i] = x[i] + (0.5 * h) * slope[i];
   }
-  derivative(k, at, demand, gust, slope);
-  for (std::size_t i = 0; i < state::size; ++i) {
+  derivative(k, at, demand, gust, slope, dynamics);
+  for (std::size_t i = 0; i < N; ++i) {
     sum[i] = sum[i] + 2.0 * slope[i];
     at[i] = x[i] + (0.5 * h) * slope[i];
   }
-  derivative(k, at, demand, gust, slope);
-  for (std::size_t i = 0; i < state::size; ++i) {
+  derivative(k, at, demand, gust, slope, dynamics);
+  for (std::size_t i = 0; i < N; ++i) {
     sum[i] = sum[i] + 2.0 * slope[i];
     at[i] = x[i] + h * slope[i];
   }
-  derivative(k, at, demand, gust, slope);
-  for (std::size_t i = 0; i < state::size; ++i) x[i] = x[i] + (h / 6.0) * (sum[i] + slope[i]);
+  derivative(k, at, demand, gust, slope, dynamics);
+  for (std::size_t i = 0; i < N; ++i) x[i] = x[i] + (h / 6.0) * (sum[i] + slope[i]);
   enforce_limits(k, x);
 }
 
@@ -247,8 +280,8 @@ std::array<T, 4> quaternion_of(const T& phi, const T& theta) {
 }
 
 /// Bank and pitch.
-template <typename T>
-std::array<T, 2> euler_of(const State<T>& x) {
+template <typename T, std::size_t N>
+std::array<T, 2> euler_of(const std::array<T, N>& x) {
   using std::asin;
   using std::atan2;
   const std::array<T, 3> down = down_in_body(x);

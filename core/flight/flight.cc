@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "core/base/text.h"
+#include "core/flight/flight_paths.h"
+#include "core/flight/flight_plants.h"
 
 namespace fatmc {
 namespace {
@@ -17,14 +19,6 @@ int parts(double tick_s, double part_s) {
   return divides ? static_cast<int>(whole) : 0;
 }
 
-/// What controller, sensors and limits want to know about the plant at a tick.
-struct Observation {
-  std::array<double, 3> rates;
-  std::array<double, 3> velocity;  ///< over ground
-  double phi, theta;
-  double level_turn;  ///< sin(phi) cos(theta)
-};
-
 /// Limits of the flow angles as what velocities compare with.
 struct AngleLimits {
   explicit AngleLimits(const Validity& v)
@@ -35,7 +29,7 @@ struct AngleLimits {
 };
 
 /// Where the model stops being valid. Comparisons are written so that a NaN fails them.
-Ending judge(const Validity& limits, const AngleLimits& angles, const Observation& at,
+Ending judge(const Validity& limits, const AngleLimits& angles, const internal::Observation& at,
              const Gust<double>& gust, double airspeed) {
   if (!std::isfinite(airspeed + at.rates[0] + at.rates[1] + at.rates[2] + at.phi + at.theta)) {
     return Ending::not_finite;
@@ -53,19 +47,6 @@ Ending judge(const Validity& limits, const AngleLimits& angles, const Observatio
   if (!(std::abs(at.theta) <= limits.pitch_max_rad)) return Ending::pitch;
   return Ending::completed;
 }
-
-/// Counts of limited servos.
-struct LimitCount {
-  std::array<std::int64_t, 3> position{}, rate{};
-  std::int64_t looks = 0;
-  void look(const FlightConstants& k, const double* positions, const double* rates) {
-    ++looks;
-    for (std::size_t i = 0; i < 3; ++i) {
-      position[i] += std::abs(positions[i]) >= k.position_limit[i];
-      rate[i] += std::abs(rates[i]) >= k.rate_limit[i];
-    }
-  }
-};
 
 }  // namespace
 
@@ -89,89 +70,74 @@ std::string_view name(Ending ending) {
   return "?";
 }
 
-/// The full equations of motion.
-class Flight::NonlinearPlant {
- public:
-  explicit NonlinearPlant(const Flight& flight)
-      : flight_(flight), x_(flight.trim_.state), step_s_(flight.tick_s_ / flight.steps_per_tick_) {}
-
-  [[nodiscard]] Observation observe() const {
-    const std::array<double, 3> down = down_in_body(x_);
-    return {{x_[state::rates], x_[state::rates + 1], x_[state::rates + 2]},
-            {x_[state::velocity], x_[state::velocity + 1], x_[state::velocity + 2]},
-            std::atan2(down[1], down[2]),
-            std::asin(std::clamp(-down[0], -1.0, 1.0)),
-            down[1]};
-  }
-
-  /// One tick; `node(i, rates)` is told the rates after Runge-Kutta step i.
-  template <typename Node>
-  void advance(const std::array<double, 3>& command, const Gust<double>& gust, LimitCount& count, Node node) {
-    Demand<double> demand;
-    demand.surfaces = mix(flight_.constants_, command, flight_.trim_.demand.surfaces);
-    demand.throttle = flight_.trim_.demand.throttle;
-    for (int i = 0; i < flight_.steps_per_tick_; ++i) {
-      rk4_step(flight_.constants_, demand, gust, step_s_, x_);
-      count.look(flight_.constants_, &x_[state::surfaces], &x_[state::surface_rates]);
-      node(i, &x_[state::rates]);
-    }
-  }
-  [[nodiscard]] int nodes() const { return flight_.steps_per_tick_; }
-
- private:
-  const Flight& flight_;
-  State<double> x_;
-  double step_s_;
-};
-
-/// The sampled linear step map, in deviations from trim.
-class Flight::LinearPlant {
- public:
-  explicit LinearPlant(const Flight& flight) : flight_(flight) { x_.setZero(); }
-
-  [[nodiscard]] Observation observe() const {
-    const double theta = flight_.trim_.alpha_rad + x_[7];
-    const State<double>& trim = flight_.trim_.state;
-    return {
-        {x_[3], x_[4], x_[5]},
-        {trim[state::velocity] + x_[0], trim[state::velocity + 1] + x_[1], trim[state::velocity + 2] + x_[2]},
-        x_[6],
-        theta,
-        std::sin(x_[6]) * std::cos(theta)};
-  }
-
-  template <typename Node>
-  void advance(const std::array<double, 3>& command, const Gust<double>& gust, LimitCount& count, Node node) {
-    const LinearModel& map = flight_.sampled_;
-    Eigen::Matrix<double, 6, 1> g;
-    g << gust.velocity[0], gust.velocity[1], gust.velocity[2], gust.rates[0], gust.rates[1], gust.rates[2];
-    const Eigen::Matrix<double, kLinearStates, 1> next =
-        map.a * x_ + map.b * Eigen::Map<const Eigen::Vector3d>(command.data()) + map.e * g;
-    x_ = next;
-    std::array<double, 3> position;
-    for (std::size_t i = 0; i < 3; ++i) position[i] = flight_.trim_.demand.surfaces[i] + x_[10 + i];
-    count.look(flight_.constants_, position.data(), x_.data() + 13);
-    node(0, x_.data() + 3);
-  }
-  [[nodiscard]] int nodes() const { return 1; }
-
- private:
-  const Flight& flight_;
-  Eigen::Matrix<double, kLinearStates, 1> x_;
-};
-
 Flight::Flight(const Aircraft& aircraft, const FlightSetup& setup, Trim trim)
     : aircraft_(aircraft),
       setup_(setup),
       trim_(std::move(trim)),
-      constants_(aircraft),
       tick_s_(1.0 / setup.rate_hz),
       steps_per_tick_(parts(tick_s_, setup.step_s)),
       imu_samples_(parts(tick_s_, setup.imu_step_s)),
+      direct_path_(setup.path == SignalPath{} && setup.stages.empty()),
+      rigid_(aircraft.additional == AdditionalPhysics{}),
       continuous_(linearize(aircraft, trim_)),
       sampled_(sample(aircraft, trim_, tick_s_, steps_per_tick_)),
-      dryden_(setup.turbulence_m_s, aircraft.speed_m_s, aircraft.span_m, tick_s_),
-      gyro_(setup.imu, imu_samples_ / tick_s_) {}
+      dryden_(setup.turbulence_m_s, aircraft.speed_m_s, aircraft.span_m, tick_s_) {
+  const auto add = [&](const FlightStage& stage) {
+    const FlightConstants constants(stage.aircraft);
+    stages_.push_back({stage.from_s, constants, AdditionalDynamics(stage.aircraft, constants, true),
+                       Gyro(stage.imu, imu_samples_ / tick_s_), stage.gain, stage.path,
+                       PreparedStage::Delay(stage.path.command_delay_s, tick_s_, setup.step_s)});
+  };
+  add({0.0, aircraft, setup.imu, setup.gain, setup.path});
+  for (const FlightStage& stage : setup.stages) {
+    add(stage);
+    rigid_ = rigid_ && stage.aircraft.additional == AdditionalPhysics{};
+  }
+  const PreparedStage::Delay& delay = stages_.front().delay;
+  if (delay.steps_before == 0) {
+    segment_maps_ = {sampled_};
+  } else {
+    segment_maps_ = {sample(aircraft, trim_, delay.steps_before * delay.step_before_s, delay.steps_before),
+                     sample(aircraft, trim_, delay.steps_after * delay.step_after_s, delay.steps_after)};
+  }
+}
+
+namespace {
+
+/// What the signal path and later stages may not be.
+Status check_path(const Aircraft& aircraft, const FlightSetup& setup) {
+  const auto wrong = [](std::string key, std::string message) -> Status {
+    return fail(Error{"", 0, std::move(key), std::move(message)});
+  };
+  std::vector<const SignalPath*> paths = {&setup.path};
+  double time_s = 0.0;
+  for (const FlightStage& stage : setup.stages) {
+    if (!(stage.from_s > time_s)) return wrong("stages", "must begin after the start, one after the other");
+    time_s = stage.from_s;
+    if (Status status = check(stage.aircraft); !status) return status;
+    paths.push_back(&stage.path);
+  }
+  for (const SignalPath* path : paths) {
+    if (!(path->command_delay_s >= 0.0 && path->command_delay_s <= 10.0)) {
+      return wrong("command_delay_s", "write a delay from 0 to 10 s");
+    }
+    const PreparedStage::Delay delay(path->command_delay_s, 1.0 / setup.rate_hz, setup.step_s);
+    if (setup.average_imu && delay.steps_before > 0) {
+      return wrong("command_delay_s",
+                   "averaged gyros need equal Runge-Kutta steps: write a whole number of ticks");
+    }
+    if (!(path->gyro_time_constant_s >= 0.0)) return wrong("gyro_time_constant_s", "write at least 0");
+  }
+  if (setup.plant == FlightSetup::Plant::linear) {
+    if (!setup.stages.empty()) return wrong("plant", "changes in flight need plant = \"nonlinear\"");
+    if (aircraft.additional.has_modes()) {
+      return wrong("plant", "flexible modes and slosh need plant = \"nonlinear\"");
+    }
+  }
+  return {};
+}
+
+}  // namespace
 
 Result<Flight> Flight::prepare(const Aircraft& aircraft, const FlightSetup& setup) {
   const auto wrong = [](std::string key, std::string message) {
@@ -190,6 +156,7 @@ Result<Flight> Flight::prepare(const Aircraft& aircraft, const FlightSetup& setu
   }
   if (!(setup.turbulence_m_s >= 0.0))
     return wrong("turbulence_m_s", "write a standard deviation of at least 0");
+  if (const Status status = check_path(aircraft, setup); !status) return fail(status.error());
   const Trim trim = trim_level(aircraft);
   if (!trim.usable()) {
     return wrong("speed_m_s",
@@ -202,8 +169,8 @@ Result<Flight> Flight::prepare(const Aircraft& aircraft, const FlightSetup& setu
   return Flight(aircraft, setup, trim);
 }
 
-template <typename PlantType>
-void Flight::fly_plant(PlantType plant, const Eigen::Ref<const Eigen::MatrixX3d>& reference,
+template <typename PlantType, typename Path>
+void Flight::fly_plant(PlantType plant, Path path, const Eigen::Ref<const Eigen::MatrixX3d>& reference,
                        const TrialSeed& trial, FlightRecord& record) const {
   RandomStream gust_noise(trial, "turbulence");
   RandomStream imu_noise(trial, "imu");
@@ -211,14 +178,17 @@ void Flight::fly_plant(PlantType plant, const Eigen::Ref<const Eigen::MatrixX3d>
   Dryden::StateVector air{};
   if (windy && !setup_.gusts_from_calm) air = dryden_.start(gust_noise);
   const AngleLimits angles(aircraft_.validity);
-  LimitCount count;
+  internal::LimitCount count;
   std::array<double, 3> square_sum{};
   // Rates at the nodes of the last tick, its begin included; only an averaging unit reads them.
-  const int nodes = plant.nodes();
+  const int nodes = setup_.plant == FlightSetup::Plant::linear ? 1 : steps_per_tick_;
   std::vector<std::array<double, 3>> node_rates(static_cast<std::size_t>(nodes) + 1, plant.observe().rates);
 
   const Eigen::Index n = reference.rows();
   for (Eigen::Index t = 0; t < n; ++t) {
+    if constexpr (Path::kModified) {
+      if (path.begin(t)) plant.change(path.stage().constants, path.stage().additional);
+    }
     Gust<double> gust;
     if (windy) {
       const Dryden::Gusts g = dryden_.gusts(air);
@@ -226,7 +196,7 @@ void Flight::fly_plant(PlantType plant, const Eigen::Ref<const Eigen::MatrixX3d>
       gust = {{g[0], side * g[1], g[2]}, {side * g[3], g[4], side * g[5]}};
       dryden_.advance(air, gust_noise);
     }
-    const Observation at = plant.observe();
+    const internal::Observation at = plant.observe();
     double air2 = 0.0;
     for (std::size_t i = 0; i < 3; ++i)
       air2 += (at.velocity[i] - gust.velocity[i]) * (at.velocity[i] - gust.velocity[i]);
@@ -239,7 +209,7 @@ void Flight::fly_plant(PlantType plant, const Eigen::Ref<const Eigen::MatrixX3d>
 
     std::array<double, 3> y{};
     if (!setup_.average_imu) {
-      y = gyro_.sample(at.rates, imu_noise);
+      y = path.gyro().sample(path.sensed(at.rates), imu_noise);
     } else {
       for (int s = 1; s <= imu_samples_; ++s) {
         const double place = static_cast<double>(s) * nodes / imu_samples_;
@@ -249,37 +219,41 @@ void Flight::fly_plant(PlantType plant, const Eigen::Ref<const Eigen::MatrixX3d>
         for (std::size_t i = 0; i < 3; ++i) {
           rates[i] = (1.0 - share) * node_rates[before][i] + share * node_rates[before + 1][i];
         }
-        const std::array<double, 3> one = gyro_.sample(rates, imu_noise);
+        const std::array<double, 3> one = path.gyro().sample(path.disturbed(rates), imu_noise);
         for (std::size_t i = 0; i < 3; ++i) y[i] += one[i] / imu_samples_;
       }
-      node_rates[0] = at.rates;
+      node_rates[0] = path.lagged(at.rates);
     }
 
     std::array<double, 3> command;
     for (int i = 0; i < 3; ++i) {
       const double r = reference(t, i);
       command[static_cast<std::size_t>(i)] =
-          setup_.closed_loop ? setup_.gain[i] * (r - y[static_cast<std::size_t>(i)]) : r;
+          setup_.closed_loop ? path.gain(i) * (r - y[static_cast<std::size_t>(i)]) : r;
     }
     if (setup_.closed_loop && setup_.turn_coordinator) {
       const double ground_speed =
           std::sqrt(at.velocity[0] * at.velocity[0] + at.velocity[1] * at.velocity[1] +
                     at.velocity[2] * at.velocity[2]);
-      command[2] += setup_.gain[2] * kGravity / ground_speed * at.level_turn;
+      command[2] += path.turn_coordinator() * (path.gain(2) * kGravity / ground_speed * at.level_turn);
     }
     for (int i = 0; i < 3; ++i) {
-      const double u = command[static_cast<std::size_t>(i)];
+      const double u = path.recorded(static_cast<std::size_t>(i), command[static_cast<std::size_t>(i)]);
       record.input(t, i) = u;
       record.output(t, i) = y[static_cast<std::size_t>(i)];
       square_sum[static_cast<std::size_t>(i)] += u * u;
     }
     record.auxiliary(t, 0) = at.phi;
     record.auxiliary(t, 1) = at.theta;
-    record.auxiliary(t, 2) = airspeed;
+    record.auxiliary(t, 2) = path.airspeed(airspeed);
     record.samples = t + 1;
 
-    plant.advance(command, gust, count, [&](int i, const double* rates) {
-      if (setup_.average_imu) node_rates[static_cast<std::size_t>(i) + 1] = {rates[0], rates[1], rates[2]};
+    std::size_t next_node = 1;
+    path.segments(command, [&](const internal::CommandSegment& segment, int part) {
+      plant.advance(segment, part, gust, count, [&](double step_s, const std::array<double, 3>& rates) {
+        const std::array<double, 3>& seen = path.node(step_s, rates);
+        if (setup_.average_imu) node_rates[next_node++] = seen;
+      });
     });
   }
   if (record.ending == Ending::completed) record.ending_time_s = static_cast<double>(n) * tick_s_;
@@ -304,10 +278,23 @@ void Flight::fly(const Eigen::Ref<const Eigen::MatrixX3d>& reference, const Tria
   record.at_position_limit.setZero();
   record.at_rate_limit.setZero();
   record.input_rms.setZero();
+  // One loop a kind of flight: a flight without effects pays for none of them.
+  const auto fly_with = [&](auto plant) {
+    if (direct_path_) {
+      const internal::DirectPath path(stages_.front(), steps_per_tick_, tick_s_ / steps_per_tick_);
+      fly_plant(plant, path, reference, trial, record);
+    } else {
+      const internal::ModifiedPath path(stages_, tick_s_, plant.observe().rates);
+      fly_plant(plant, path, reference, trial, record);
+    }
+  };
+  const PreparedStage& first = stages_.front();
   if (setup_.plant == FlightSetup::Plant::linear) {
-    fly_plant(LinearPlant(*this), reference, trial, record);
+    fly_with(internal::LinearPlant(first.constants, trim_, segment_maps_));
+  } else if (rigid_) {
+    fly_with(internal::NonlinearPlant<RigidDynamics>(first.constants, trim_, RigidDynamics{}));
   } else {
-    fly_plant(NonlinearPlant(*this), reference, trial, record);
+    fly_with(internal::NonlinearPlant<AdditionalDynamics>(first.constants, trim_, first.additional));
   }
 }
 

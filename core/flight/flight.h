@@ -5,6 +5,7 @@
 //   u[n] and g[n] held over [n, n+1), which is flown in Runge-Kutta steps.
 // So y is read before the new u acts, and y[n+1] is the first to see u[n]: the loop closes over
 // G0(z) = C (zI - Phi)^-1 Gamma + D of sample() (linear_model.h).
+// What lies between controller, servos, gyros and record beyond that: signal_path.h.
 // Turn coordinator: r_ct = (g/V) sin(phi) cos(theta), V over ground. T 3.2 prints m where g belongs.
 #pragma once
 
@@ -13,12 +14,24 @@
 
 #include "core/base/error.h"
 #include "core/flight/dryden.h"
+#include "core/flight/flight_stages.h"
 #include "core/flight/imu.h"
 #include "core/flight/linear_model.h"
+#include "core/flight/signal_path.h"
 #include "core/flight/trim.h"
 #include "core/random/random_stream.h"
 
 namespace fatmc {
+
+/// What a flight goes on with from a time on: everything but environment and trim settings may change.
+struct FlightStage {
+  double from_s = 0.0;
+  Aircraft aircraft;
+  Imu imu;
+  Eigen::Vector3d gain = Eigen::Vector3d::Zero();
+  SignalPath path;
+  bool operator==(const FlightStage&) const = default;
+};
 
 struct FlightSetup {
   double rate_hz = 50.0;  ///< of the controller and the record (T 3.2.1)
@@ -42,6 +55,9 @@ struct FlightSetup {
   bool closed_loop = true;         ///< false: u = r, normalised commands
   Eigen::Vector3d gain = Eigen::Vector3d::Constant(0.1);  ///< diagonal of K, s/rad (T 5.2: 0.1; T 3.2.3: 0.5)
   bool turn_coordinator = true;
+  SignalPath path;
+  std::vector<FlightStage> stages;  ///< later ones, in order; the nonlinear plant alone has them
+  bool operator==(const FlightSetup&) const = default;
 };
 
 /// How a flight ended.
@@ -93,23 +109,22 @@ class Flight {
   [[nodiscard]] const LinearModel& sampled() const { return sampled_; }
 
  private:
-  class NonlinearPlant;
-  class LinearPlant;
   Flight(const Aircraft& aircraft, const FlightSetup& setup, Trim trim);
-  template <typename PlantType>
-  void fly_plant(PlantType plant, const Eigen::Ref<const Eigen::MatrixX3d>& reference, const TrialSeed& trial,
-                 FlightRecord& record) const;
+  template <typename PlantType, typename Path>
+  void fly_plant(PlantType plant, Path path, const Eigen::Ref<const Eigen::MatrixX3d>& reference,
+                 const TrialSeed& trial, FlightRecord& record) const;
 
   Aircraft aircraft_;
   FlightSetup setup_;
   Trim trim_;
-  FlightConstants constants_;
   double tick_s_;
   int steps_per_tick_;
   int imu_samples_;
+  std::vector<PreparedStage> stages_;
+  bool direct_path_, rigid_;
   LinearModel continuous_, sampled_;
+  std::vector<LinearModel> segment_maps_;  ///< of the linear plant
   Dryden dryden_;
-  Gyro gyro_;
 };
 
 }  // namespace fatmc

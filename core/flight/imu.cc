@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fatmc {
 
-double Imu::quantum() const { return range_rad_s > 0.0 ? std::ldexp(range_rad_s, 1 - bits) : 0.0; }
+double Imu::quantum() const {
+  return std::max(range_rad_s > 0.0 ? std::ldexp(range_rad_s, 1 - bits) : 0.0, coarse_step_rad_s);
+}
 
 Gyro::Gyro(const Imu& imu, double sample_rate_hz)
     : bias_(imu.bias_rad_s),
       noise_(imu.noise_rad_sqrt_s * std::sqrt(sample_rate_hz)),
-      range_(imu.range_rad_s),
+      range_(imu.range_rad_s > 0.0 ? imu.range_rad_s : std::numeric_limits<double>::infinity()),
       quantum_(imu.quantum()),
       inverse_quantum_(quantum_ > 0.0 ? 1.0 / quantum_ : 0.0) {
   std::size_t next = 0;

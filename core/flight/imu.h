@@ -20,9 +20,11 @@ struct Imu {
   double noise_rad_sqrt_s = 0.0;             ///< N, angle random walk: rad/s per sqrt(Hz), two-sided
   double range_rad_s = 0.0;                  ///< 0: neither saturation nor quantisation
   int bits = 0;
+  double coarse_step_rad_s = 0.0;  ///< rounds to multiples of this instead, if it is coarser
 
-  /// 2 range / 2^bits, or 0.
+  /// 2 range / 2^bits or the coarse step, or 0.
   [[nodiscard]] double quantum() const;
+  bool operator==(const Imu&) const = default;
 };
 
 /// The unit sampled at a fixed rate, constants taken out of the loop.

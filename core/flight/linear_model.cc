@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/flight/additional_dynamics.h"
 #include "core/flight/dual.h"
 #include "core/flight/zeros.h"
 
@@ -53,7 +54,11 @@ LinearModel linearize(const Aircraft& aircraft, const Trim& trim) {
   const FlightConstants k(aircraft);
   const Seeded at = seed(k, trim);
   State<Scalar> dx;
-  derivative(k, at.x, at.demand, at.gust, dx);
+  if (aircraft.additional == AdditionalPhysics{}) {
+    derivative(k, at.x, at.demand, at.gust, dx);
+  } else {
+    derivative(k, at.x, at.demand, at.gust, dx, AdditionalDynamics(aircraft, k, false));
+  }
   std::array<Scalar, kLinearStates> rows;
   for (std::size_t i = 0; i < 6; ++i) rows[i] = dx[state::velocity + i];
   for (std::size_t i = 8; i < kLinearStates; ++i) rows[i] = dx[state::propeller + i - 8];
@@ -71,7 +76,12 @@ LinearModel linearize(const Aircraft& aircraft, const Trim& trim) {
 LinearModel sample(const Aircraft& aircraft, const Trim& trim, double tick_s, int steps) {
   const FlightConstants k(aircraft);
   Seeded at = seed(k, trim);
-  for (int i = 0; i < steps; ++i) rk4_step(k, at.demand, at.gust, tick_s / steps, at.x);
+  if (aircraft.additional == AdditionalPhysics{}) {
+    for (int i = 0; i < steps; ++i) rk4_step(k, at.demand, at.gust, tick_s / steps, at.x);
+  } else {
+    const AdditionalDynamics dynamics(aircraft, k, false);
+    for (int i = 0; i < steps; ++i) rk4_step(k, at.demand, at.gust, tick_s / steps, at.x, dynamics);
+  }
   LinearModel model = collect(displacement(trim, at.x));
   model.sample_time_s = tick_s;
   return model;
@@ -96,7 +106,8 @@ ComplexStateMatrix pencil_at(const LinearModel& model, double frequency_hz) {
 
 Eigen::Matrix3cd LinearModel::response(double frequency_hz) const {
   using Complex = std::complex<double>;
-  return c.cast<Complex>() * pencil_at(*this, frequency_hz).partialPivLu().solve(b.cast<Complex>()) + d.cast<Complex>();
+  return c.cast<Complex>() * pencil_at(*this, frequency_hz).partialPivLu().solve(b.cast<Complex>()) +
+         d.cast<Complex>();
 }
 
 Eigen::Matrix<std::complex<double>, 3, 6> LinearModel::gust_response(double frequency_hz) const {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 
+#include "core/flight/additional_dynamics.h"
 #include "core/flight/dual.h"
 
 namespace fatmc {
@@ -14,9 +15,9 @@ FlightConstants::FlightConstants(const Aircraft& a)
       span(a.span_m),
       chord(a.chord_m),
       inverse_mass(1.0 / a.mass_kg),
-      ixx(a.ixx_kg_m2),
-      iyy(a.iyy_kg_m2),
-      izz(a.izz_kg_m2),
+      ixx(a.ixx_kg_m2 + a.apparent_inertia_kg_m2[0]),
+      iyy(a.iyy_kg_m2 + a.apparent_inertia_kg_m2[1]),
+      izz(a.izz_kg_m2 + a.apparent_inertia_kg_m2[2]),
       ixz(a.ixz_kg_m2),
       inverse_xx(izz / (ixx * izz - ixz * ixz)),
       inverse_yy(1.0 / iyy),
@@ -42,7 +43,7 @@ FlightConstants::FlightConstants(const Aircraft& a)
     torque[i] = power * a.propulsion.diameter_m * a.propulsion.torque[i];
     power /= a.propulsion.diameter_m;
     const Actuator& servo = i == 0 ? a.aileron : a.ruddervator;
-    servo_stiffness[i] = servo.frequency_rad_s * servo.frequency_rad_s;
+    servo_stiffness[i] = servo.frequency_rad_s * servo.frequency_rad_s * a.additional.servo_drive[i];
     servo_damping[i] = 2.0 * servo.damping * servo.frequency_rad_s;
     position_limit[i] = servo.position_limit_rad;
     rate_limit[i] = servo.rate_limit_rad_s;
@@ -51,6 +52,17 @@ FlightConstants::FlightConstants(const Aircraft& a)
 }
 
 namespace {
+
+/// dx/dt in still air, with whatever the aircraft has besides the rigid body.
+template <typename T>
+void slopes(const Aircraft& a, const FlightConstants& k, const State<T>& x, const Demand<T>& demand,
+            State<T>& dx) {
+  if (a.additional == AdditionalPhysics{}) {
+    derivative(k, x, demand, Gust<T>{}, dx);
+  } else {
+    derivative(k, x, demand, Gust<T>{}, dx, AdditionalDynamics(a, k, false));
+  }
+}
 
 /// State and demand of level flight with the four unknowns (alpha, eta, throttle, n).
 template <typename T>
@@ -90,7 +102,7 @@ Trim trim_level(const Aircraft& a) {
     State<Scalar> dx;
     Demand<Scalar> demand;
     place(a, variable, x, demand);
-    derivative(k, x, demand, Gust<Scalar>{}, dx);
+    slopes(a, k, x, demand, dx);
     Eigen::Vector4d value;
     Eigen::Matrix4d jacobian;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -113,7 +125,7 @@ Trim trim_level(const Aircraft& a) {
   trim.thrust_n =
       (k.thrust[0] * trim.propeller_hz + k.thrust[1] * u) * trim.propeller_hz + k.thrust[2] * u * u;
   State<double> dx;
-  derivative(k, trim.state, trim.demand, Gust<double>{}, dx);
+  slopes(a, k, trim.state, trim.demand, dx);
   trim.residual = 0.0;
   for (const double slope : dx) trim.residual = std::max(trim.residual, std::abs(slope));
   const bool inside = trim.throttle >= 0.0 && trim.throttle <= 1.0 && trim.propeller_hz > 0.0 &&

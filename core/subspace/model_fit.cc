@@ -47,13 +47,17 @@ Eigen::MatrixXd simulate(const DiscreteModel& model, const Eigen::Ref<const Eige
 }
 
 Result<ModelFit> fit_maneuver(const DiscreteModel& model, const Maneuver& maneuver, int free_states) {
-  auto modal = modal_model(model);
+  const auto modal = modal_model(model);
   if (!modal) return fail(modal.error());
+  return fit_maneuver(*modal, maneuver, free_states);
+}
+
+Result<ModelFit> fit_maneuver(const ModalModel& modal, const Maneuver& maneuver, int free_states) {
   ModelFit out;
-  out.outputs = simulate(modal->model, maneuver.inputs);
-  const Eigen::Index n_y = model.c.rows(), samples = maneuver.samples(),
-                     free = whole_modes(modal->eigenvalues, free_states);
-  Eigen::MatrixXd regressor = start_regressor(modal->model, free, samples);
+  out.outputs = simulate(modal.model, maneuver.inputs);
+  const Eigen::Index n_y = modal.model.c.rows(), samples = maneuver.samples(),
+                     free = whole_modes(modal.eigenvalues, free_states);
+  Eigen::MatrixXd regressor = start_regressor(modal.model, free, samples);
   if (!out.outputs.allFinite() || !regressor.allFinite()) {
     return fail("the simulated maneuver is not finite: the model is unstable");
   }

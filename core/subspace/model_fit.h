@@ -29,6 +29,10 @@ struct ModelFit {
 Result<ModelFit> fit_maneuver(const DiscreteModel& model, const Maneuver& maneuver,
                               int free_states = kFreeInitialStates);
 
+/// The same for a model whose modal form is at hand.
+Result<ModelFit> fit_maneuver(const ModalModel& modal, const Maneuver& maneuver,
+                              int free_states = kFreeInitialStates);
+
 /// x_0 = 0: the response to the inputs alone.
 Eigen::MatrixXd simulate(const DiscreteModel& model, const Eigen::Ref<const Eigen::MatrixXd>& inputs);
 

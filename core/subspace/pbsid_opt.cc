@@ -86,6 +86,17 @@ Status solve_residual(const RegressionData& data, PbsidModel& model) {
 
 }  // namespace
 
+Status describe_predictor(int past, PbsidModel& model) {
+  const Eigen::MatrixXd a_k = model.a - model.k * model.c;
+  const auto eigenvalues = eigenvalues_of(model.a);
+  const auto radius = spectral_radius(a_k);
+  if (!eigenvalues || !radius) return fail("the identified model is not finite");
+  model.eigenvalues = *eigenvalues;
+  model.predictor_radius = *radius;
+  model.predictor_norm = spectral_norm_of_power(a_k, past);
+  return {};
+}
+
 Result<PbsidModel> regress_model(std::span<const Maneuver> maneuvers, const StateMap& map,
                                  const PbsidOptions& options) {
   const RegressionData data = regression_data(maneuvers, map);
@@ -99,12 +110,7 @@ Result<PbsidModel> regress_model(std::span<const Maneuver> maneuvers, const Stat
   const bool paper = options.final_regression == FinalRegression::paper;
   if (Status status = paper ? solve_paper(data, model) : solve_residual(data, model); !status)
     return fail(status.error());
-  const auto eigenvalues = eigenvalues_of(model.a);
-  const auto radius = spectral_radius(model.a - model.k * model.c);
-  if (!eigenvalues || !radius) return fail("the identified model is not finite");
-  model.eigenvalues = *eigenvalues;
-  model.predictor_radius = *radius;
-  model.predictor_norm = spectral_norm_of_power(model.a - model.k * model.c, map.past);
+  if (Status status = describe_predictor(map.past, model); !status) return fail(status.error());
   return model;
 }
 

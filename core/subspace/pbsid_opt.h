@@ -58,4 +58,7 @@ Result<PbsidModel> identify_pbsid(std::span<const Maneuver> maneuvers, const Pbs
 Result<PbsidModel> regress_model(std::span<const Maneuver> maneuvers, const StateMap& map,
                                  const PbsidOptions& options);
 
+/// Fills in what follows from A, C and K: eigenvalues, radius and norm of the predictor.
+Status describe_predictor(int past, PbsidModel& model);
+
 }  // namespace fatmc

@@ -17,6 +17,7 @@
 
 #include "core/base/error.h"
 #include "core/subspace/maneuvers.h"
+#include "core/subspace/ridge_choice.h"
 
 namespace fatmc {
 
@@ -32,30 +33,23 @@ struct PredictorFactor {
   [[nodiscard]] int n_z() const { return n_u + n_y; }
 };
 
-/// Fails where the past is below 1, a maneuver has no sample beyond it, or there are fewer equations than
-/// unknowns; the message names the largest past that works.
+/// Fails as check_maneuvers does, where the past is below 1, a maneuver has no sample beyond it, or there are
+/// fewer equations than unknowns; the message names the largest past that works.
+Status check_past_window(std::span<const Maneuver> maneuvers, int past);
+
+/// Fails where R with that diagonal is singular to rounding.
+Status check_pivots(const Eigen::Ref<const Eigen::VectorXd, 0, Eigen::InnerStride<>>& diagonal);
+
+/// Rows of Phi^T, and z_t^T = [u_t^T y_t^T], for the samples first <= t < last of every maneuver (first >= past; a last
+/// beyond its end: to its end), one maneuver below the other.
+struct PredictorEquations {
+  Eigen::MatrixXd phi, z;
+};
+PredictorEquations predictor_equations(std::span<const Maneuver> maneuvers, int past, Eigen::Index first,
+                                       Eigen::Index last);
+
+/// Fails as check_past_window does.
 Result<PredictorFactor> factor_predictor(std::span<const Maneuver> maneuvers, int past);
-
-enum class Regularization {
-  fixed,   ///< lambda as given; 0: plain least squares
-  gcv,     ///< generalised cross validation
-  srgcv,   ///< strong robust generalised cross validation
-  lcurve,  ///< corner of the L-curve
-};
-
-/// How lambda is chosen. With the singular values s_i of Phi and the filter f_i = s_i^2/(s_i^2 + lambda^2),
-/// all outputs together:
-///   GCV    V = (RSS/M) / (1 - sum f_i / M)^2
-///   SRGCV  (gamma + (1 - gamma) mu_1) V,  mu_1 = sum (s_1 s_i/(s_i^2 + lambda^2))^2 / M, gamma = 0.95
-///          (Bauer & Lukas 2011, H's ref. 24; their operator is scaled, and neither H nor they fix the scale
-///          here: ours is norm 1. It regularises much more than GCV where the data are ill-conditioned.)
-///   lcurve largest curvature of (log RSS, log ||Xi||^2)
-/// The search runs over lambda / s_1 = 10^-12 ... 1, 20 values a decade: fixed, so that the result is too.
-struct RegularizationOptions {
-  /// GCV: of the three rules the one without a free constant.
-  Regularization rule = Regularization::gcv;
-  double lambda = 0.0;  ///< for `fixed`
-};
 
 struct PredictorMarkov {
   Eigen::MatrixXd xi;  ///< n_y x p n_z, [Xi_1 ... Xi_p]

@@ -34,6 +34,8 @@ GOOGLE = {
        for name in ("etfe", "tlpm", "robust", "lrm", "arbitrary", "joint", "welch")},
     "monitor_epochs_per_s": ("bench_stability", "monitor_epochs_per_s", "1/s", 1.0, True,
                              "thesis: about 1; bar 500, ten times the sample rate"),
+    "pbsid_shared_over_direct": ("bench_subspace", "pbsid_models/.*", "1/s", "pbsid_direct_per_s", True,
+                                 "a direct computation for each model in the same run: 105 models of 15 windows"),
     "acked_per_s": ("bench_engine", "AckedTrials/100000/2", "1/s", "dask_noop_per_s", True,
                     "Dask distributed in the same run, without storage or keys; bar 20,000 with CURVE, synchronous=FULL"),
     "coordinator_us_per_trial": ("bench_engine", "AckedTrials/100000/2", "us", 50.0, False, "bar"),

@@ -72,6 +72,22 @@ TEST(Marks, PutDataWhereTheAxesSay) {
   EXPECT_THAT(mark_svg(Rule{"", 10.0, true}, x, y), HasSubstr("d=\"M100 100L100 0\""));
 }
 
+TEST(Marks, DrawABoxWithMedianWhiskersAndOutliers) {
+  const AxisScale x({"", Scale::logarithmic, {}, {}}, {1.0, 100.0}, 0.0, 200.0),
+      y({}, {0.0, 10.0}, 100.0, 0.0);
+  Boxes boxes{"",   {10.0},    {{1.0, 2.0, 5.0, 7.0, 8.0, {9.5}}}, 2.0 * (std::pow(10.0, 0.2) - 1.0),
+              true, Hue::green};
+  const std::string svg = mark_svg(boxes, x, y);
+  EXPECT_THAT(svg, HasSubstr("x=\"80\" y=\"30\" width=\"40\" height=\"50\""));
+  EXPECT_THAT(svg, HasSubstr("M80 50L120 50M100 80L100 90M100 30L100 20"));
+  EXPECT_THAT(svg, HasSubstr("cx=\"100\" cy=\"5\" r=\"1\""));
+  Panel panel;
+  panel.x.scale = Scale::logarithmic;
+  panel.marks = {boxes};
+  EXPECT_NEAR(axis_range(panel, false).low, std::pow(10.0, 0.8), 1e-12);
+  EXPECT_DOUBLE_EQ(axis_range(panel, true).high, 9.5 + 0.05 * 8.5);
+}
+
 TEST(Marks, BreakWhereAValueHasNoPlace) {
   const AxisScale x({}, {0.0, 4.0}, 0.0, 400.0), y({"", Scale::logarithmic, {}, {}}, {1.0, 10.0}, 100.0, 0.0);
   const std::string line =
@@ -133,6 +149,16 @@ TEST(Svg, HoldsEveryPanelAndEachNameOnce) {
   EXPECT_THAT(svg, HasSubstr("width=\"688\""));
   EXPECT_EQ(count(svg, "<g"), count(svg, "</g>"));
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
+}
+
+TEST(Svg, InsideAPageRefersToItsOwnPartsAndBringsNoStyle) {
+  Figure figure;
+  figure.panels.resize(2);
+  for (Panel& panel : figure.panels) panel.marks = {Line{"a", {1.0, 2.0}, {3.0, 4.0}}};
+  const std::string svg = inline_svg(figure, "coverage-fig-5-4");
+  EXPECT_THAT(svg, Not(HasSubstr("<style>")));
+  EXPECT_EQ(count(svg, "id=\"coverage-fig-5-4-clip1\""), 1);
+  EXPECT_EQ(count(svg, "url(#coverage-fig-5-4-clip1)"), 1);
 }
 
 }  // namespace

@@ -1,0 +1,127 @@
+#include "campaigns/candidates/model_analysis.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "campaigns/candidates/candidates_spec.h"
+#include "core/accuracy/series_accuracy.h"
+#include "core/handling/control_loop.h"
+#include "core/handling/requirements.h"
+#include "core/subspace/model_fit.h"
+
+namespace fatmc::candidates {
+namespace {
+
+constexpr double kFeet = 1.0 / 0.3048, kDegrees = 180.0 / std::numbers::pi;
+constexpr Eigen::Index kRollRate = 3;
+
+/// H (9): velocities in ft/s, rates in deg/s, attitudes in deg.
+Eigen::RowVectorXd rms_units() {
+  Eigen::RowVectorXd out(kOutputs);
+  out << kFeet, kFeet, kFeet, kDegrees, kDegrees, kDegrees, kDegrees, kDegrees;
+  return out;
+}
+
+}  // namespace
+
+double frequency_rad_s(int index) {
+  constexpr double low = 0.1, high = 35.0;
+  return low * std::pow(high / low, static_cast<double>(index) / (kFrequencies - 1));
+}
+
+Result<Validation> validate(const DiscreteModel& model, std::span<const Maneuver> maneuvers) {
+  const auto modal = modal_model(model);
+  if (!modal) return fail(modal.error());
+  Eigen::Index samples = 0;
+  for (const Maneuver& maneuver : maneuvers) samples += maneuver.samples();
+  Eigen::MatrixXd measured(samples, kOutputs), simulated(samples, kOutputs);
+  Eigen::Index row = 0;
+  for (const Maneuver& maneuver : maneuvers) {
+    const auto fit = fit_maneuver(*modal, maneuver);
+    if (!fit) return fail(fit.error());
+    measured.middleRows(row, maneuver.samples()) = maneuver.outputs;
+    simulated.middleRows(row, maneuver.samples()) = fit->outputs;
+    row += maneuver.samples();
+  }
+  std::vector<double> indices;
+  for (Eigen::Index i = 0; i < kOutputs; ++i) {
+    const auto count = static_cast<std::size_t>(samples);
+    const auto index = index_of_agreement({measured.col(i).data(), count}, {simulated.col(i).data(), count});
+    if (!index) return fail("an output of the validation maneuvers never moves");
+    indices.push_back(std::max(0.0, *index));
+  }
+  const Eigen::RowVectorXd units = rms_units();
+  return Validation{overall_index_of_agreement(indices),
+                    rms_error(measured * units.asDiagonal(), simulated * units.asDiagonal())};
+}
+
+std::vector<Mode> truth_modes(const DiscreteModel& truth, double rate_hz) {
+  const auto continuous = continuous_model(truth, 1.0 / rate_hz, Continuation::zoh);
+  if (!continuous) return {};
+  const auto modes = modes_of(continuous->a);
+  return modes ? *modes : std::vector<Mode>{};
+}
+
+int count_artifacts(std::span<const Mode> modes, std::span<const Mode> truth) {
+  int count = 0;
+  for (const Mode& mode : modes) {
+    if (!mode.oscillatory() || std::abs(mode.s) >= kArtifactRad_s ||
+        std::abs(mode.damping()) >= kArtifactDamping)
+      continue;
+    if (!nearest_mode(truth, mode, kNear)) ++count;
+  }
+  return count;
+}
+
+std::vector<double> roll_magnitude_db(const ContinuousModel& model) {
+  const Eigen::Index n = model.a.rows();
+  std::vector<double> out;
+  for (int k = 0; k < kFrequencies; ++k) {
+    const std::complex<double> s(0.0, frequency_rad_s(k));
+    const Eigen::MatrixXcd shifted = s * Eigen::MatrixXcd::Identity(n, n) - model.a;
+    const Eigen::VectorXcd x = Eigen::PartialPivLU<Eigen::MatrixXcd>(shifted).solve(
+        model.b.col(kLateralInput).cast<std::complex<double>>());
+    const std::complex<double> g =
+        (model.c.row(kRollRate).cast<std::complex<double>>() * x).value() * kDegrees;
+    out.push_back(20.0 * std::log10(std::max(std::abs(g), 1e-12)));
+  }
+  return out;
+}
+
+Result<ModelAnalysis> analyse(const DiscreteModel& model, double rate_hz, std::span<const Mode> truth) {
+  const auto bare = continuous_model(model, 1.0 / rate_hz, Continuation::zoh);
+  if (!bare) return fail(bare.error());
+  const std::array<ContinuousModel, 3> vehicles = {*bare, stabilized_vehicle(*bare),
+                                                   optimized_vehicle(*bare)};
+  std::array<std::vector<Mode>, 3> modes;
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    const auto found = modes_of(vehicles[i].a);
+    if (!found) return fail(found.error());
+    modes[i] = *found;
+  }
+  ModelAnalysis out;
+  for (std::size_t i = 0; i < kTrackedModes.size(); ++i) {
+    const TrackedMode& wanted = kTrackedModes[i];
+    const auto mode = nearest_mode(modes[static_cast<std::size_t>(wanted.vehicle)],
+                                   mode_of(wanted.period_s, wanted.damping), kTrackedNear);
+    if (!mode) continue;
+    out.period_s[i] = mode->period_s();
+    out.damping[i] = mode->damping();
+  }
+  for (std::size_t i = 0; i < kJudged.size(); ++i) {
+    const JudgedResponse& judged = kJudged[i];
+    const auto shares =
+        mode_shares(vehicles[static_cast<std::size_t>(judged.vehicle)], judged.output, judged.input);
+    if (!shares) continue;
+    out.level[i] = ads33_level(*shares, kSeenShare);
+    out.approval[i] = 1 + static_cast<int>(cs27_approval(*shares, kSeenShare));
+  }
+  out.artifacts = count_artifacts(modes[0], truth);
+  out.magnitude_db = roll_magnitude_db(*bare);
+  return out;
+}
+
+}  // namespace fatmc::candidates

@@ -1,0 +1,110 @@
+#include "campaigns/candidates/model_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "core/base/check.h"
+
+namespace fatmc::candidates {
+namespace {
+
+const std::vector<double>& need(const TrialRow& row, std::string_view name) {
+  const std::vector<double>* values = row.array(name);
+  FATMC_CHECK(values != nullptr, "a row of the candidates study holds all its arrays");
+  return *values;
+}
+
+void add_analyses(const TrialRow& row, std::size_t first, ModelTable& table) {
+  const auto& analysed = need(row, kAnalysed);
+  const auto &period = need(row, kPeriod), &damping = need(row, kDamping), &level = need(row, kLevel),
+             &approval = need(row, kApproval), &artifacts = need(row, kArtifacts),
+             &magnitude = need(row, kMagnitude);
+  constexpr std::size_t modes = kTrackedModes.size(), judged = kJudged.size(), grid = kFrequencies;
+  for (std::size_t k = 0; k < analysed.size(); ++k) {
+    ModelAnalysisRow out;
+    for (std::size_t i = 0; i < modes; ++i) {
+      out.period_s[i] = period[k * modes + i];
+      out.damping[i] = damping[k * modes + i];
+    }
+    for (std::size_t i = 0; i < judged; ++i) {
+      out.level[i] = static_cast<int>(level[k * judged + i]);
+      out.approval[i] = static_cast<int>(approval[k * judged + i]);
+    }
+    out.artifacts = static_cast<int>(artifacts[k]);
+    const auto begin = magnitude.begin() + static_cast<std::ptrdiff_t>(k * grid);
+    out.magnitude_db.assign(begin, begin + static_cast<std::ptrdiff_t>(grid));
+    table.models[first + static_cast<std::size_t>(analysed[k])].analysis =
+        static_cast<int>(table.analyses.size());
+    table.analyses.push_back(std::move(out));
+  }
+}
+
+double metric(const TrialRow& row, std::string_view name) {
+  for (const auto& [key, value] : row.metrics) {
+    if (key == name) return value;
+  }
+  return 0.0;
+}
+
+std::vector<std::size_t> leading(const std::vector<std::size_t>& sorted, std::size_t count) {
+  return {sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(std::min(count, sorted.size()))};
+}
+
+}  // namespace
+
+ModelTable read_models(std::uint32_t cell, const RowSource& rows) {
+  ModelTable out;
+  rows(cell, [&](const TrialRow& row) {
+    ++out.trials;
+    if (row.outcome != "ok") {
+      ++out.failed_trials;
+      return;
+    }
+    const std::size_t first = out.models.size();
+    const auto &past = need(row, kPast), &future = need(row, kFuture), &order = need(row, kOrder),
+               &state = need(row, kState), &agreement = need(row, kAgreement), &rms = need(row, kRms),
+               &norm = need(row, kNorm);
+    for (std::size_t i = 0; i < past.size(); ++i) {
+      out.models.push_back({static_cast<int>(past[i]), static_cast<int>(future[i]),
+                            static_cast<int>(order[i]), static_cast<ModelState>(static_cast<int>(state[i])),
+                            agreement[i], rms[i], norm[i], -1});
+    }
+    add_analyses(row, first, out);
+    out.not_identified += metric(row, kNotIdentified);
+    out.not_validated += metric(row, kNotValidated);
+    out.not_continuous += metric(row, kNotContinuous);
+  });
+  return out;
+}
+
+Selected select(const ModelTable& table, const Selection& selection) {
+  Selected out;
+  std::size_t of_order = 0;
+  for (std::size_t i = 0; i < table.models.size(); ++i) {
+    const ModelRow& model = table.models[i];
+    if (model.order != selection.order) continue;
+    ++of_order;
+    if (model.state == ModelState::ok) out.all.push_back(i);
+  }
+  // Equal d1 keep the order of the plan.
+  std::stable_sort(out.all.begin(), out.all.end(), [&](std::size_t one, std::size_t other) {
+    return table.models[one].agreement > table.models[other].agreement;
+  });
+  std::vector<double> norms;
+  for (const std::size_t i : out.all) norms.push_back(table.models[i].norm);
+  std::sort(norms.begin(), norms.end());
+  const auto kept =
+      static_cast<std::size_t>(std::lround(selection.smallest_norms * static_cast<double>(norms.size())));
+  out.limit = selection.norm;
+  if (selection.smallest_norms > 0.0) out.limit = kept < norms.size() ? norms[kept] : INFINITY;
+  for (const std::size_t i : out.all) {
+    if (table.models[i].norm < out.limit) out.accepted.push_back(i);
+  }
+  const auto count = static_cast<std::size_t>(std::lround(selection.share * static_cast<double>(of_order)));
+  out.best = leading(out.all, count);
+  out.candidates = leading(out.accepted, count);
+  return out;
+}
+
+}  // namespace fatmc::candidates

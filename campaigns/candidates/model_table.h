@@ -1,0 +1,49 @@
+// All models of a cell, as the rows of its trials give them, and the selection of H 4.2 and 4.3.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "campaigns/base/study.h"
+#include "campaigns/candidates/candidates_spec.h"
+#include "campaigns/candidates/row_arrays.h"
+
+namespace fatmc::candidates {
+
+struct ModelAnalysisRow {
+  std::array<double, kTrackedModes.size()> period_s{}, damping{};  ///< 0 where no mode is near
+  std::array<int, kJudged.size()> level{}, approval{};
+  int artifacts = 0;
+  std::vector<double> magnitude_db;
+};
+
+struct ModelRow {
+  int past = 0, future = 0, order = 0;
+  ModelState state = ModelState::ok;
+  double agreement = 0.0, rms = 0.0, norm = 0.0;
+  int analysis = -1;  ///< index into ModelTable::analyses, or -1
+};
+
+struct ModelTable {
+  std::vector<ModelRow> models;
+  std::vector<ModelAnalysisRow> analyses;
+  std::uint64_t trials = 0, failed_trials = 0;
+  double not_identified = 0.0, not_validated = 0.0, not_continuous = 0.0;
+};
+
+ModelTable read_models(std::uint32_t cell, const RowSource& rows);
+
+/// Indices into ModelTable::models, best d1 first. Models that failed are in none.
+struct Selected {
+  double limit = 0.0;                 ///< of the norm
+  std::vector<std::size_t> all;       ///< of the order
+  std::vector<std::size_t> best;      ///< `share` of all by d1 alone
+  std::vector<std::size_t> accepted;  ///< norm below the limit
+  std::vector<std::size_t>
+      candidates;  ///< as many as `best`, by d1 among those accepted; fewer where there are not so many
+};
+
+Selected select(const ModelTable& table, const Selection& selection);
+
+}  // namespace fatmc::candidates

@@ -1,0 +1,62 @@
+// Names of what a trial of the candidates study leaves in its row, shared by the trial that writes and the
+// summary that reads.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace fatmc::candidates {
+
+// A value a model, in the order past (descending), future, order (both ascending).
+inline constexpr std::string_view kPast = "past", kFuture = "future", kOrder = "order";
+inline constexpr std::string_view kState = "state";    ///< a ModelState
+inline constexpr std::string_view kAgreement = "d1";   ///< overall index of agreement, H (11); 0 without
+inline constexpr std::string_view kRms = "j_rms";      ///< H (9), ft/s, deg/s, deg; 0 without
+inline constexpr std::string_view kNorm = "norm";      ///< spectral norm of A_K^p; 0 without
+inline constexpr std::string_view kLambda = "lambda";  ///< a value a past window
+
+enum class ModelState { ok = 0, not_identified = 1, not_validated = 2 };
+
+// Models of the orders that are selected from, in the same order: kAnalysed holds their index in the lists
+// above. Of each kTrackedModes periods and dampings; 0 where no mode is near (or no continuous model exists).
+inline constexpr std::string_view kAnalysed = "analysed";
+inline constexpr std::string_view kPeriod = "mode_period_s", kDamping = "mode_damping";
+inline constexpr std::string_view kLevel = "ads33_level";  ///< kJudged values, 0 without
+inline constexpr std::string_view kApproval =
+    "cs27_approval";  ///< kJudged values: 1 single, 2 two, 3 none, 0 without
+inline constexpr std::string_view kArtifacts = "artifacts";  ///< number of resonances the truth does not have
+inline constexpr std::string_view kMagnitude =
+    "p_delta_y_db";  ///< kFrequencies values, deg/s per per cent in dB
+
+// Metrics: how many models, and how many failed at which step.
+inline constexpr std::string_view kModels = "models", kNotIdentified = "not_identified",
+                                  kNotValidated = "not_validated", kNotContinuous = "not_continuous";
+
+/// The modes that H prints, in the order of its text.
+struct TrackedMode {
+  const char* name;
+  int vehicle;  ///< 0 bare, 1 stabilized (14), 2 optimized (15)
+  double period_s, damping;
+};
+inline constexpr std::array<TrackedMode, 5> kTrackedModes = {{{"phugoid, bare", 0, 19.2, -0.16},
+                                                              {"phugoid, SCAS", 1, 4.9, 0.4},
+                                                              {"roll/flap, SCAS", 1, 0.45, 0.32},
+                                                              {"lead-lag, SCAS", 1, 0.55, 0.03},
+                                                              {"roll/flap, SCAS and filter", 2, 0.43, 0.58}}};
+
+/// What is judged by CS-27 and ADS-33: a vehicle's response of an output to an input.
+struct JudgedResponse {
+  const char* name;
+  int vehicle, output, input;
+  int published_level;
+};
+inline constexpr std::array<JudgedResponse, 4> kJudged = {{{"pitch, bare", 0, 4, 0, 2},
+                                                           {"pitch, SCAS", 1, 4, 0, 1},
+                                                           {"roll, SCAS", 1, 3, 1, 2},
+                                                           {"roll, SCAS and filter", 2, 3, 1, 1}}};
+
+/// Of the transfer functions p/delta_y: 40 from 0.1 to 35 rad/s, equally spaced on a logarithmic axis.
+inline constexpr int kFrequencies = 40;
+double frequency_rad_s(int index);
+
+}  // namespace fatmc::candidates

@@ -1,0 +1,163 @@
+#include "campaigns/candidates/trial.h"
+
+#include <algorithm>
+#include <string>
+
+#include "campaigns/candidates/candidates_spec.h"
+#include "campaigns/candidates/flight_test.h"
+#include "campaigns/candidates/model_analysis.h"
+#include "campaigns/candidates/row_arrays.h"
+#include "core/subspace/model_family.h"
+
+namespace fatmc::candidates {
+namespace {
+
+/// Collects the arrays of a row, model by model.
+class BlockResults {
+ public:
+  BlockResults(const CandidatesSpec& spec, std::span<const Maneuver> multisteps, std::span<const Mode> truth)
+      : spec_(spec), multisteps_(multisteps), truth_(truth) {}
+
+  void add(const FamilyMember& member, const Result<PbsidModel>& model) {
+    past_.push_back(member.past);
+    future_.push_back(member.future);
+    order_.push_back(member.order);
+    state_.push_back(static_cast<double>(ModelState::ok));
+    agreement_.push_back(0.0);
+    rms_.push_back(0.0);
+    norm_.push_back(0.0);
+    if (lambda_past_ != member.past && model) {
+      lambda_past_ = member.past;
+      lambda_.push_back(model->lambda);
+    }
+    if (!model) return failed(ModelState::not_identified, member, model.error());
+    norm_.back() = model->predictor_norm;
+    const DiscreteModel discrete{model->a, model->b, model->c};
+    const auto validation = validate(discrete, multisteps_);
+    if (!validation) return failed(ModelState::not_validated, member, validation.error());
+    agreement_.back() = validation->agreement;
+    rms_.back() = validation->rms;
+    const bool selected = std::any_of(spec_.selections.begin(), spec_.selections.end(),
+                                      [&](const Selection& s) { return s.order == member.order; });
+    if (selected) add_analysis(discrete, member);
+  }
+
+  void write(TrialRow& row) {
+    row.metrics = {{std::string(kModels), static_cast<double>(past_.size())},
+                   {std::string(kNotIdentified), static_cast<double>(not_identified_)},
+                   {std::string(kNotValidated), static_cast<double>(not_validated_)},
+                   {std::string(kNotContinuous), static_cast<double>(not_continuous_)}};
+    const auto array = [&](std::string_view name, std::vector<double>& values) {
+      row.arrays.emplace_back(std::string(name), std::move(values));
+    };
+    array(kPast, past_), array(kFuture, future_), array(kOrder, order_), array(kState, state_);
+    array(kAgreement, agreement_), array(kRms, rms_), array(kNorm, norm_), array(kLambda, lambda_);
+    array(kAnalysed, analysed_), array(kPeriod, period_), array(kDamping, damping_), array(kLevel, level_);
+    array(kApproval, approval_), array(kArtifacts, artifacts_), array(kMagnitude, magnitude_);
+    row.detail = first_failure_;
+  }
+
+ private:
+  void failed(ModelState state, const FamilyMember& member, const Error& error) {
+    state_.back() = static_cast<double>(state);
+    (state == ModelState::not_identified ? not_identified_ : not_validated_) += 1;
+    note(member, error);
+  }
+
+  void note(const FamilyMember& member, const Error& error) {
+    if (!first_failure_.empty()) return;
+    first_failure_ = "first failure at p " + std::to_string(member.past) + ", f " +
+                     std::to_string(member.future) + ", n " + std::to_string(member.order) + ": " +
+                     error.message;
+  }
+
+  void add_analysis(const DiscreteModel& discrete, const FamilyMember& member) {
+    const auto analysis = analyse(discrete, spec_.truth.rate_hz, truth_);
+    if (!analysis) {
+      ++not_continuous_;
+      return note(member, analysis.error());
+    }
+    analysed_.push_back(static_cast<double>(past_.size() - 1));
+    period_.insert(period_.end(), analysis->period_s.begin(), analysis->period_s.end());
+    damping_.insert(damping_.end(), analysis->damping.begin(), analysis->damping.end());
+    level_.insert(level_.end(), analysis->level.begin(), analysis->level.end());
+    approval_.insert(approval_.end(), analysis->approval.begin(), analysis->approval.end());
+    artifacts_.push_back(analysis->artifacts);
+    magnitude_.insert(magnitude_.end(), analysis->magnitude_db.begin(), analysis->magnitude_db.end());
+  }
+
+  const CandidatesSpec& spec_;
+  std::span<const Maneuver> multisteps_;
+  std::span<const Mode> truth_;
+  std::vector<double> past_, future_, order_, state_, agreement_, rms_, norm_, lambda_;
+  std::vector<double> analysed_, period_, damping_, level_, approval_, artifacts_, magnitude_;
+  int lambda_past_ = 0, not_identified_ = 0, not_validated_ = 0, not_continuous_ = 0;
+  std::string first_failure_;
+};
+
+class CandidatesTrials final : public PreparedCell {
+ public:
+  CandidatesTrials(CandidatesSpec spec, FlownTest flown)
+      : spec_(std::move(spec)),
+        flown_(std::move(flown)),
+        truth_(truth_modes(spec_.truth.model, spec_.truth.rate_hz)) {}
+
+  TrialRow run(std::uint64_t repetition) const override {
+    TrialRow row;
+    row.key = {0, repetition};
+    const Identification& identification = spec_.identification;
+    FamilyPlan plan;
+    plan.pasts = identification.block_pasts(repetition);
+    if (plan.pasts.empty()) {
+      row.outcome = "no_block";
+      row.detail = "the spec has " + std::to_string(identification.blocks()) + " blocks of past windows";
+      return row;
+    }
+    plan.futures.assign(identification.pasts.rbegin(), identification.pasts.rend());  // f in M_p, H (3b)
+    plan.lowest_order = identification.lowest_order;
+    plan.highest_order = identification.highest_order;
+    plan.regularization = identification.regularization;
+    plan.lambda_for_each_past = identification.lambda_for_each_past;
+    plan.final_regression = identification.final_regression;
+    BlockResults results(spec_, flown_.multisteps, truth_);
+    const Status status = identify_family(
+        flown_.sweeps, plan,
+        [&](const FamilyMember& member, const Result<PbsidModel>& model) { results.add(member, model); });
+    if (!status) {
+      row.outcome = "not_identified";
+      row.detail = status.error().message;
+      return row;
+    }
+    results.write(row);
+    return row;
+  }
+
+ private:
+  CandidatesSpec spec_;
+  FlownTest flown_;
+  std::vector<Mode> truth_;
+};
+
+Result<std::unique_ptr<PreparedCell>> prepare(const CampaignSpec& spec, std::uint32_t cell) {
+  auto decoded = decode_candidates(spec);
+  if (!decoded) return fail(decoded.error());
+  // One flight test for all blocks: that of repetition 0.
+  FlownTest flown = fly_test(decoded->truth, decoded->flight, spec.trial_seed({cell, 0}));
+  remove_offsets(flown.sweeps, OffsetRemoval::mean);
+  remove_offsets(flown.multisteps, OffsetRemoval::first);
+  if (Status status = check_maneuvers(flown.sweeps); !status) {
+    Error error = status.error();
+    const Tree* table = spec.tree.find("flight");
+    error.file = table->file;
+    error.line = table->line;
+    error.key = "flight";
+    return fail(error);
+  }
+  return std::make_unique<CandidatesTrials>(std::move(*decoded), std::move(flown));
+}
+
+}  // namespace
+
+const TrialStudy kTrialStudy{"candidates", &prepare};
+
+}  // namespace fatmc::candidates
