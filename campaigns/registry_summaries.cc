@@ -16,15 +16,15 @@ namespace fatmc {
 
 const SummaryStudy* find_summary_study(std::string_view name) {
   static const std::vector<SummaryStudy> studies = {
-      bias::kSummaryStudy,
       coverage::kSummaryStudy,
       estimators::kSummaryStudy,
       conditions::kSummaryStudy,
+      bias::kSummaryStudy,
+      variance::kSummaryStudy,
+      stability::kSummaryStudy,
       dynamics_change::kSummaryStudy,
       candidates::kSummaryStudy,
       hidden_effect::kSummaryStudy,
-      stability::kSummaryStudy,
-      variance::kSummaryStudy,
   };
   for (const SummaryStudy& study : studies) {
     if (study.name == name) return &study;

@@ -14,15 +14,15 @@ namespace fatmc {
 
 const std::vector<TrialStudy>& trial_studies() {
   static const std::vector<TrialStudy> studies = {
-      bias::kTrialStudy,
       coverage::kTrialStudy,
       estimators::kTrialStudy,
       conditions::kTrialStudy,
+      bias::kTrialStudy,
+      variance::kTrialStudy,
+      stability::kTrialStudy,
       dynamics_change::kTrialStudy,
       candidates::kTrialStudy,
       hidden_effect::kTrialStudy,
-      stability::kTrialStudy,
-      variance::kTrialStudy,
   };
   return studies;
 }

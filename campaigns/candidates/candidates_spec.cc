@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "campaigns/base/decoder.h"
+#include "core/base/text.h"
 
 namespace fatmc::candidates {
 namespace {
@@ -109,7 +110,10 @@ Status decode_selection(const Tree& tree, const Identification& identification, 
   Decoder table(tree, "selection");
   out.order = static_cast<int>(
       table.integer("order", {.low = identification.lowest_order, .high = identification.highest_order}));
-  out.norm = table.real("norm", {.low = 0.0, .high = 1e12});
+  const bool limit = table.has("norm"), quantile = table.has("smallest_norms");
+  if (limit) out.norm = table.real("norm", {.low = 0.0, .high = 1e12});
+  if (quantile) out.smallest_norms = table.real("smallest_norms", {.low = 1e-6, .high = 1.0});
+  if (limit == quantile && !table.error()) table.reject("norm", "give either norm or smallest_norms");
   out.share = table.real("share", {.low = 0.0, .high = 1.0});
   return table.finish();
 }
@@ -126,6 +130,11 @@ std::vector<int> Identification::block_pasts(std::size_t index) const {
   const std::size_t last = std::min(first + size, pasts.size());
   return {pasts.begin() + static_cast<std::ptrdiff_t>(first),
           pasts.begin() + static_cast<std::ptrdiff_t>(last)};
+}
+
+std::string Selection::limit_text() const {
+  return smallest_norms > 0.0 ? "smallest " + significant(100.0 * smallest_norms, 3) + " % of the norms"
+                              : "norm below " + significant(norm, 3);
 }
 
 Result<CandidatesSpec> decode_candidates(const CampaignSpec& own) {

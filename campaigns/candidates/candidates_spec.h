@@ -49,8 +49,14 @@ struct Identification {
 /// The two steps of H 4.3 for one order: spectral norm of A_K^p below a limit, then the best by d1.
 struct Selection {
   int order = 12;
+  /// The limit. H calls it user-defined, and gives 1e-10 for n = 12, 1e-3 for n = 18.
   double norm = 1e-10;
+  /// In its place, a share of the models of the order: those of the smallest norms. 0: `norm` counts.
+  double smallest_norms = 0.0;
   double share = 0.15;  ///< of all models of that order that are taken
+
+  /// What tells it from another selection of the same order.
+  [[nodiscard]] std::string limit_text() const;
 };
 
 struct CandidatesSpec {

@@ -152,7 +152,7 @@ StudyFigure windows(const ModelTable& table, const Selection& selection, const S
     panel.marks.push_back(scatter("best by d1", table, selected.best, plot::Hue::red, y, false));
     panel.marks.push_back(scatter("candidates", table, selected.candidates, plot::Hue::orange, y, false));
     if (norm)
-      panel.marks.push_back(plot::Rule{"limit", selection.norm, false, plot::Hue::grey, plot::Dash::dashed});
+      panel.marks.push_back(plot::Rule{"limit", selected.limit, false, plot::Hue::grey, plot::Dash::dashed});
     figure.panels.push_back(std::move(panel));
   }
   return {"Figs. 6, 7", "Every model of the order; of more than 3000 every k-th.", std::move(figure)};
@@ -223,16 +223,21 @@ Result<std::vector<StudyFigure>> figures(const CampaignSpec& spec, const RowSour
     five.panels = {responses("all", table, of_first.all, truth),
                    responses("best by d1", table, of_first.best, truth)};
     out.push_back({"Fig. 5", "Magnitude of p/delta_y in deg/s per per cent of control.", std::move(five)});
-    out.push_back(windows(table, first, of_first, suffix));
+    for (const Selection& selection : decoded->selections) {
+      if (selection.order == first.order)
+        out.push_back(windows(table, selection, select(table, selection), suffix));
+    }
     plot::Figure eight;
     eight.title = "Roll response of the candidates" + suffix;
     eight.columns = 2;
     for (const Selection& selection : decoded->selections) {
-      eight.panels.push_back(responses("candidates, n = " + std::to_string(selection.order), table,
-                                       select(table, selection).candidates, truth));
+      eight.panels.push_back(
+          responses("n = " + std::to_string(selection.order) + ", " + selection.limit_text(), table,
+                    select(table, selection).candidates, truth));
     }
     out.push_back({"Fig. 8", "As Fig. 5, for the candidates.", std::move(eight)});
-    out.push_back(eigenvalues(table, select(table, decoded->selections.back()), suffix));
+    const Selection& last = decoded->selections.back();
+    out.push_back(eigenvalues(table, select(table, last), suffix + ", " + last.limit_text()));
   }
   return out;
 }

@@ -91,8 +91,15 @@ Selected select(const ModelTable& table, const Selection& selection) {
   std::stable_sort(out.all.begin(), out.all.end(), [&](std::size_t one, std::size_t other) {
     return table.models[one].agreement > table.models[other].agreement;
   });
+  std::vector<double> norms;
+  for (const std::size_t i : out.all) norms.push_back(table.models[i].norm);
+  std::sort(norms.begin(), norms.end());
+  const auto kept =
+      static_cast<std::size_t>(std::lround(selection.smallest_norms * static_cast<double>(norms.size())));
+  out.limit = selection.norm;
+  if (selection.smallest_norms > 0.0) out.limit = kept < norms.size() ? norms[kept] : INFINITY;
   for (const std::size_t i : out.all) {
-    if (table.models[i].norm < selection.norm) out.accepted.push_back(i);
+    if (table.models[i].norm < out.limit) out.accepted.push_back(i);
   }
   const auto count = static_cast<std::size_t>(std::lround(selection.share * static_cast<double>(of_order)));
   out.best = leading(out.all, count);

@@ -36,6 +36,7 @@ ModelTable read_models(std::uint32_t cell, const RowSource& rows);
 
 /// Indices into ModelTable::models, best d1 first. Models that failed are in none.
 struct Selected {
+  double limit = 0.0;                 ///< of the norm
   std::vector<std::size_t> all;       ///< of the order
   std::vector<std::size_t> best;      ///< `share` of all by d1 alone
   std::vector<std::size_t> accepted;  ///< norm below the limit

@@ -34,6 +34,9 @@ class CellTables {
     return row;
   }
 
+  /// The same with more behind the names of its rows.
+  [[nodiscard]] CellTables with(const std::string& more) const { return {more + suffix_, published_, out_}; }
+
   void add(TableRow row) const { out_.push_back(std::move(row)); }
 
   /// A claim of print without an interval of ours: same behaviour, or not.
@@ -130,6 +133,7 @@ void add_artifacts(const ModelTable& table, const Selected& selected, const std:
 void add_selection(const ModelTable& table, const Selection& selection, const Selected& selected,
                    const CellTables& out) {
   const std::string name = "n = " + std::to_string(selection.order);
+  out.add(out.row("Section 4", name, "limit of the norm", "", selected.limit, selected.all.size()));
   const auto count = [&](const char* quantity, const std::vector<std::size_t>& set) {
     out.add(out.row("Section 4", name, quantity, "", static_cast<double>(set.size()), selected.all.size()));
   };
@@ -238,14 +242,17 @@ Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& 
         compared_with_print(spec, cell) ? *published : std::vector<PublishedFigure>{}, out);
     add_counts(table, cell_tables);
     add_figure_4(table, cell_tables);
-    for (const Selection& selection : decoded->selections)
-      add_selection(table, selection, select(table, selection), cell_tables);
-    if (decoded->selections.empty()) continue;
-    // H analyses the candidates of the last order, n = 18.
-    const Selected analysed = select(table, decoded->selections.back());
-    for (std::size_t mode = 0; mode < kTrackedModes.size(); ++mode)
-      add_mode(table, analysed, mode, cell_tables);
-    add_levels(table, analysed, cell_tables);
+    int highest = 0;
+    for (const Selection& selection : decoded->selections) highest = std::max(highest, selection.order);
+    for (const Selection& selection : decoded->selections) {
+      const CellTables own_tables = cell_tables.with(", " + selection.limit_text());
+      const Selected selected = select(table, selection);
+      add_selection(table, selection, selected, own_tables);
+      if (selection.order != highest || selected.candidates.empty()) continue;  // H analyses n = 18
+      for (std::size_t mode = 0; mode < kTrackedModes.size(); ++mode)
+        add_mode(table, selected, mode, own_tables);
+      add_levels(table, selected, own_tables);
+    }
   }
   return out;
 }

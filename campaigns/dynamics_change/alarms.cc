@@ -17,7 +17,15 @@ double defined_from(const MonitoredRun& run) { return run.window_s + quarter(run
 }  // namespace
 
 std::string_view name(Detector detector) {
-  return detector == Detector::csl ? "confident stability level" : "noise rise";
+  switch (detector) {
+    case Detector::csl:
+      return "CSL (Bonferroni)";
+    case Detector::csl_min:
+      return "CSL (smallest p)";
+    case Detector::noise_rise:
+      return "noise rise";
+  }
+  return "?";
 }
 
 std::vector<double> alarm_statistic(const MonitoredRun& run, Detector detector) {
@@ -25,8 +33,8 @@ std::vector<double> alarm_statistic(const MonitoredRun& run, Detector detector) 
   const auto lag = static_cast<std::size_t>(std::llround(quarter(run) / run.epoch_s));
   for (std::size_t i = lag; i < out.size(); ++i) {
     if (run.time(i) < defined_from(run) - kRounding) continue;  // both for the same epochs
-    if (detector == Detector::csl) {
-      out[i] = 1.0 - run.csl[i];
+    if (detector != Detector::noise_rise) {
+      out[i] = 1.0 - (detector == Detector::csl ? run.csl : run.csl_min)[i];
       continue;
     }
     double rise = -std::numeric_limits<double>::infinity();
@@ -73,14 +81,14 @@ QuarterWindow quarter_window(const MonitoredRun& run, const std::vector<double>&
   return out;
 }
 
-CslFall csl_fall(const MonitoredRun& run) {
+CslFall csl_fall(const MonitoredRun& run, const std::vector<double>& csl) {
   CslFall out;
   double sum = 0.0;
   int n = 0;
   for (std::size_t i = 0; i < run.epochs(); ++i) {
     const double since = run.time(i) - run.onset_s;
     if (since <= 0.0 && since > -quarter(run) && run.time(i) >= run.window_s - kRounding) {
-      sum += run.csl[i];
+      sum += csl[i];
       ++n;
     }
   }
@@ -89,7 +97,7 @@ CslFall csl_fall(const MonitoredRun& run) {
   if (out.before < 0.1) return out;
   std::size_t last_low = run.epochs();
   for (std::size_t i = 0; i < run.epochs(); ++i) {
-    if (run.time(i) <= run.onset_s || run.csl[i] >= 0.5 * out.before) continue;
+    if (run.time(i) <= run.onset_s || csl[i] >= 0.5 * out.before) continue;
     if (std::isnan(out.fall_s)) out.fall_s = run.time(i) - run.onset_s;
     last_low = i;
   }

@@ -1,6 +1,7 @@
-// Two alarms over a monitored flight, and what they cost.
+// Alarms over a monitored flight, and what they cost.
 //
-//   confident stability level   alarm where CSL < threshold: T's (section 5.7)
+//   confident stability level   alarm where CSL < threshold: T's (section 5.7), with Bonferroni's rule over the elements of a line
+//                               (Fig. 5-16) or the smallest p (2.271)
 //   noise rise                  alarm where D(t) = max over p, q, r of L_i(t) - L_i(t - W/4) > threshold, L_i the mean over the
 //                               lines of ln C_V_noise,ii. A change within the window makes the record aperiodic: the response
 //                               to the references no longer repeats, and leaks into the lines between, from which the noise
@@ -16,8 +17,8 @@
 
 namespace fatmc::dynamics_change {
 
-enum class Detector { csl, noise_rise };
-inline constexpr Detector kDetectors[] = {Detector::csl, Detector::noise_rise};
+enum class Detector { csl, csl_min, noise_rise };
+inline constexpr Detector kDetectors[] = {Detector::csl, Detector::csl_min, Detector::noise_rise};
 std::string_view name(Detector detector);
 
 /// What is compared with a threshold, larger is worse, one value an epoch: 1 - CSL, or D. NaN while it is not defined.
@@ -47,6 +48,6 @@ struct CslFall {
   double fall_s = std::numeric_limits<double>::quiet_NaN();
   double recovery_s = std::numeric_limits<double>::quiet_NaN();
 };
-CslFall csl_fall(const MonitoredRun& run);
+CslFall csl_fall(const MonitoredRun& run, const std::vector<double>& csl);
 
 }  // namespace fatmc::dynamics_change

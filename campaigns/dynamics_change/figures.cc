@@ -59,8 +59,10 @@ plot::Panel history_panel(const std::string& title, const std::string& label, do
 StudyFigure history_figure(const CampaignSpec& spec, const std::map<std::uint32_t, MonitoredCell>& cells,
                            Detector detector, double threshold) {
   StudyFigure out;
-  const bool csl = detector == Detector::csl;
-  out.id = csl ? "Fig. 5-16" : "Noise rise after a change";
+  const bool csl = detector != Detector::noise_rise;
+  out.id = detector == Detector::csl ? "Fig. 5-16"
+           : csl                     ? "Fig. 5-16 with the smallest p"
+                                     : "Noise rise after a change";
   out.figure.title = csl ? "Confident stability level around a change of the dynamics"
                          : "Rise of the estimated noise within a quarter window";
   out.figure.columns = 2;
@@ -68,8 +70,9 @@ StudyFigure history_figure(const CampaignSpec& spec, const std::map<std::uint32_
   for (const auto& [index, cell] : cells) {
     if (std::isinf(cell.runs.front().onset_s)) continue;
     runs += cell.runs.size();
-    const History values = history(
-        cell, [&](const MonitoredRun& run) { return csl ? run.csl : alarm_statistic(run, detector); });
+    const History values = history(cell, [&](const MonitoredRun& run) {
+      return detector == Detector::csl ? run.csl : csl ? run.csl_min : alarm_statistic(run, detector);
+    });
     if (values.empty()) continue;
     plot::Panel panel = history_panel(spec.cells[index].name, csl ? "CSL" : "D", cell.runs.front().epoch_s,
                                       values, threshold);
@@ -78,7 +81,9 @@ StudyFigure history_figure(const CampaignSpec& spec, const std::map<std::uint32_
   }
   out.caption =
       std::to_string(runs) + " flights. " +
-      (csl ? "Bonferroni over the elements; before a full window it begins with zeros."
+      (csl ? (detector == Detector::csl ? "Bonferroni over the elements"
+                                        : "Smallest p of a line's elements") +
+                 std::string("; before a full window it begins with zeros.")
            : "D: largest rise over a quarter window of the mean log noise of p, q, r; spectra from the lines "
              "between the excited ones.");
   return out;
@@ -153,6 +158,7 @@ Result<std::vector<StudyFigure>> figures(const CampaignSpec& spec, const RowSour
   std::vector<StudyFigure> out;
   if (cells.empty()) return out;
   out.push_back(history_figure(spec, cells, Detector::csl, thresholds->csl));
+  out.push_back(history_figure(spec, cells, Detector::csl_min, thresholds->csl));
   out.push_back(history_figure(spec, cells, Detector::noise_rise, thresholds->noise_rise));
   StudyFigure roc = roc_figure(spec, cells);
   if (!roc.figure.panels.empty()) out.push_back(std::move(roc));

@@ -36,7 +36,7 @@ MonitoredCell read_cell(std::uint32_t cell, const RowSource& rows) {
                      .flown_s = metric(row, kFlown),
                      .diverged = row.outcome == "diverged",
                      .csl = array(row, kCslSsv),
-                     .csl_h_infinity = array(row, kCslHInfinity),
+                     .csl_min = array(row, kCslMin),
                      .robust = array(row, kRobustSsv),
                      .noise = {array(row, kNoise[0]), array(row, kNoise[1]), array(row, kNoise[2])}};
     out.runs.push_back(std::move(run));

@@ -15,6 +15,9 @@ namespace {
 
 constexpr std::size_t kPublishedRuns = 1;  // Fig. 5-16 shows one flight
 
+constexpr const char* kZeros =
+    "a line whose references have not come yet has no estimate here, and no estimate is no confidence";
+
 /// Median of the values that exist.
 RunStatistic median_of(const std::vector<double>& values) {
   return [&values](std::span<const std::size_t> picks) {
@@ -74,7 +77,7 @@ class CellTable {
     const bool changes = std::any_of(cell_.runs.begin(), cell_.runs.end(),
                                      [](const MonitoredRun& run) { return std::isfinite(run.onset_s); });
     if (changes) {
-      add_fall();
+      for (const Detector rule : {Detector::csl, Detector::csl_min}) add_fall(rule);
       for (const Detector detector : kDetectors) add_detection(detector);
     } else {
       for (const Detector detector : kDetectors) add_false_alarms(detector);
@@ -83,35 +86,37 @@ class CellTable {
 
  private:
   [[nodiscard]] double threshold(Detector detector) const {
-    return detector == Detector::csl ? 1.0 - thresholds_.csl : thresholds_.noise_rise;
+    return detector == Detector::noise_rise ? thresholds_.noise_rise : 1.0 - thresholds_.csl;
   }
   [[nodiscard]] std::string alarm(Detector detector) const {
-    return detector == Detector::csl ? "CSL below " + shortest(thresholds_.csl)
-                                     : "noise rise above " + shortest(thresholds_.noise_rise);
+    const bool rise = detector == Detector::noise_rise;
+    return std::string(name(detector)) +
+           (rise ? " above " + shortest(thresholds_.noise_rise) : " below " + shortest(thresholds_.csl));
   }
 
-  void add_fall() {
+  void add_fall(Detector rule) {
+    const std::string csl_name(name(rule));
     std::vector<double> fall, recovery, empty_window;
     for (const MonitoredRun& run : cell_.runs) {
-      const CslFall csl = csl_fall(run);
-      fall.push_back(csl.fall_s);
-      recovery.push_back(csl.recovery_s);
-      if (run.time(0) <= 20.0 && !run.csl.empty()) empty_window.push_back(run.csl.front());
+      const std::vector<double>& csl = rule == Detector::csl ? run.csl : run.csl_min;
+      const CslFall at = csl_fall(run, csl);
+      fall.push_back(at.fall_s);
+      recovery.push_back(at.recovery_s);
+      if (!csl.empty()) empty_window.push_back(csl.front());
     }
-    TableRow row = median_row("Fig. 5-16", name_, "CSL falls below half, after", fall, true);
+    TableRow row = median_row("Fig. 5-16", name_, csl_name + " falls below half, after", fall, true);
     row.published = published_value(published_, row);
     row.why = missing_note(fall, "without a fall, or with nothing to fall from");
     judge_by_order(row, "");
     out_.push_back(std::move(row));
-    TableRow back = median_row("Fig. 5-16", name_, "CSL back above half for good, after", recovery, false);
+    TableRow back =
+        median_row("Fig. 5-16", name_, csl_name + " back above half for good, after", recovery, false);
     back.why = missing_note(recovery, "have not come back, or have not fallen");
     out_.push_back(std::move(back));
-    TableRow zeros = table_row("Fig. 5-16", name_, "CSL while the window is mostly zeros", "1");
+    TableRow zeros = table_row("Fig. 5-16", name_, csl_name + " of the first epoch, mostly zeros", "1");
     fill_mean(zeros, empty_window, kPublishedRuns);
     zeros.published = published_value(published_, zeros);
-    judge_by_order(
-        zeros,
-        "a line whose references have not come yet has no estimate here, and no estimate is no confidence");
+    judge_by_order(zeros, kZeros);
     out_.push_back(std::move(zeros));
   }
 

@@ -48,7 +48,7 @@ class EstimatorTrials final : public PreparedCell {
   std::optional<TrialRecord> record(std::uint64_t repetition) const override {
     FlightRecord flown;
     fly(repetition, flown);
-    return trial_record(flown, cell_.experiment, flight_.aircraft());
+    return trial_record(flown, cell_.experiment, cell_.model.aircraft);
   }
 
  private:
@@ -73,7 +73,7 @@ class EstimatorTrials final : public PreparedCell {
   void estimate_all(const FlightRecord& record, TrialRow& row) const {
     const double mean_speed = record.auxiliary.col(2).mean();
     const double correction =
-        cell_.speed_correction ? flight_.aircraft().speed_m_s / mean_speed : 1.0;  // (3.4)
+        cell_.speed_correction ? cell_.model.aircraft.speed_m_s / mean_speed : 1.0;  // (3.4)
     EstimatorOptions options;
     options.n_e = cell_.estimator.n_e;
     options.order = cell_.estimator.order;
@@ -171,7 +171,7 @@ Result<std::unique_ptr<PreparedCell>> prepare(const CampaignSpec& spec, std::uin
       !grid) {
     return fail(place("estimator", grid.error().key, grid.error().message));
   }
-  auto flight = Flight::prepare(cell->aircraft, cell->experiment.flight);
+  auto flight = prepare_flight(cell->model, cell->experiment.flight);
   if (!flight) {
     return fail(locate_flight_error(flight.error(), *spec.tree.find("model"), *spec.tree.find("experiment")));
   }

@@ -145,7 +145,7 @@ Result<std::shared_ptr<const Search>> make_search(const HiddenCell& cell, const 
   // Phases are those of the campaign: one excitation for all its trials.
   const TrialSeed phases{spec.seed, name_hash("hidden_effect"), name_hash("excitation"), 0};
   auto out = std::make_shared<Search>();
-  out->model = std::make_unique<ModelSimulator>(cell.flown.aircraft, setup, std::vector<Effect>{},
+  out->model = std::make_unique<ModelSimulator>(cell.flown.model.aircraft, setup, cell.flown.model.effects,
                                                 reference_signal(cell.flown.experiment, phases), FeatureExtractor(*layout, setup.gain));
   BasisOptions options;
   options.flights = cell.null_flights;

@@ -9,6 +9,7 @@
 #include "coordinator/cli/diagnosis_report.h"
 #include "coordinator/cli/diagnosis_run.h"
 #include "coordinator/cli/output_path.h"
+#include "coordinator/cli/response_diagnosis.h"
 #include "core/base/text.h"
 #include "core/record/column_file.h"
 
@@ -93,6 +94,14 @@ Exit diagnose_records(const Options& options) {
         Error{"", 0, options.model.empty() ? "--model" : "--record", "is needed, see fatmc diagnose --help"});
   }
   if (Status status = check_output_directory(options.output); !status) return report(status.error());
+  if (!response_kind(options.model).empty()) {
+    auto done = diagnose_response(options.model, options.records, options.holdout);
+    if (!done) return report(done.error());
+    fs::create_directories(options.output);
+    for (const auto& [file, text] : done->files) write_file_atomically((fs::path(options.output) / file).string(), text);
+    std::printf("%swritten: %s and what stands beside it\n", done->summary.c_str(), (fs::path(options.output) / "diagnosis.json").c_str());
+    return Exit::done;
+  }
   DiagnosisRunOptions run = options.run;
   if (run.cache.empty()) run.cache = fs::absolute(fs::path(options.output)).parent_path().string();
   auto done = run_diagnosis(options.model, options.records, options.holdout, run);

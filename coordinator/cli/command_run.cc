@@ -133,11 +133,13 @@ Exit run(const RunOptions& options) {
 void add_run_command(CLI::App& app, Exit& exit) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "runs a campaign on this machine and prints its tables");
+  command->alias("candidates");  // the same words for the study of many PBSIDopt models: fatmc candidates SPEC
   command->footer(
       "A database that exists is resumed; Ctrl-C stops cleanly (exit code 3), the same command goes on.\n"
       "Example: fatmc run campaigns/coverage/spec.toml --trials 200 --workers 2\n"
       "    and: fatmc run campaigns/coverage/spec.toml --launcher slurm --workers 40 "
       "--sbatch=--partition=long\n"
+      "    and: fatmc candidates campaigns/candidates/spec.toml --size small\n"
       "    and: fatmc run campaigns/coverage/spec.toml --launcher ssh --hosts node1:8,node2:8");
   command
       ->add_option("SPEC", options->spec,

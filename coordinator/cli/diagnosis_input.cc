@@ -126,6 +126,7 @@ Result<DiagnosedModel> read_diagnosed_model(const std::string& path) {
   auto model = decode_aircraft_model(*tree);
   if (!model) return fail(model.error());
   out.model = std::move(*model);
+  out.effects = out.model.effects;
   out.text = file_text(path);
   return out;
 }

@@ -28,7 +28,8 @@ Matrix regressor(const Eigen::MatrixXd& polynomial, const Matrix& input, const s
   Matrix out(polynomial.rows(), r * static_cast<Eigen::Index>(set.size() + 1));
   out.leftCols(r) = polynomial.cast<std::complex<double>>();
   for (std::size_t s = 0; s < set.size(); ++s) {
-    out.middleCols(r * static_cast<Eigen::Index>(s + 1), r) = input.col(set[s]).asDiagonal() * polynomial.cast<std::complex<double>>();
+    out.middleCols(r * static_cast<Eigen::Index>(s + 1), r) =
+        input.col(set[s]).asDiagonal() * polynomial.cast<std::complex<double>>();
   }
   return out;
 }
@@ -55,7 +56,8 @@ struct Window {
 std::vector<Window> cut(Eigen::Index bins, int window) {
   std::vector<Window> out;
   const Eigen::Index count = bins / window;
-  for (Eigen::Index w = 0; w < count; ++w) out.push_back({bins * w / count, static_cast<int>(bins * (w + 1) / count - bins * w / count)});
+  for (Eigen::Index w = 0; w < count; ++w)
+    out.push_back({bins * w / count, static_cast<int>(bins * (w + 1) / count - bins * w / count)});
   return out;
 }
 
@@ -72,15 +74,19 @@ double residual_with(const std::vector<Window>& windows, const Matrix& error, co
 
 }  // namespace
 
-Result<ResidualResponse> fit_residual_response(const std::vector<double>& frequency_hz, const Eigen::Ref<const Matrix>& error,
-                                               const Eigen::Ref<const Matrix>& output, const Eigen::Ref<const Matrix>& input,
+Result<ResidualResponse> fit_residual_response(const std::vector<double>& frequency_hz,
+                                               const Eigen::Ref<const Matrix>& error,
+                                               const Eigen::Ref<const Matrix>& output,
+                                               const Eigen::Ref<const Matrix>& input,
                                                const ResidualOptions& options) {
   const int inputs = static_cast<int>(input.cols()), outputs = static_cast<int>(error.cols());
   const int unknowns = (options.order + 1) * (inputs + 1);
   if (options.window < 2 * unknowns) {
-    return fail("a window of " + std::to_string(options.window) + " bins has too few for " + std::to_string(unknowns) + " unknowns");
+    return fail("a window of " + std::to_string(options.window) + " bins has too few for " +
+                std::to_string(unknowns) + " unknowns");
   }
-  if (error.rows() < 2 * options.window) return fail("the band holds fewer than two windows of " + std::to_string(options.window) + " bins");
+  if (error.rows() < 2 * options.window)
+    return fail("the band holds fewer than two windows of " + std::to_string(options.window) + " bins");
   ResidualResponse out;
   out.frequency_hz = frequency_hz;
   const std::vector<Window> windows = cut(error.rows(), options.window);
@@ -112,7 +118,8 @@ Result<ResidualResponse> fit_residual_response(const std::vector<double>& freque
         if (p * out.tests > options.level) continue;
         significant[static_cast<std::size_t>(j)] = 1;
         out.places.push_back({i, j, frequency_hz[static_cast<std::size_t>(w.first)],
-                              frequency_hz[static_cast<std::size_t>(w.first + w.bins - 1)], p, (without - full) / e.squaredNorm()});
+                              frequency_hz[static_cast<std::size_t>(w.first + w.bins - 1)], p,
+                              (without - full) / e.squaredNorm()});
       }
     }
     // Forward: the element that explains most of the output's error, as long as it is significant and material.
@@ -123,7 +130,9 @@ Result<ResidualResponse> fit_residual_response(const std::vector<double>& freque
       int best = -1;
       double least = left;
       for (int j = 0; j < inputs; ++j) {
-        if (significant[static_cast<std::size_t>(j)] == 0 || std::find(taken.begin(), taken.end(), j) != taken.end()) continue;
+        if (significant[static_cast<std::size_t>(j)] == 0 ||
+            std::find(taken.begin(), taken.end(), j) != taken.end())
+          continue;
         std::vector<int> more = taken;
         more.push_back(j);
         const double with = residual_with(windows, error, input, i, more, options.order);
@@ -145,7 +154,8 @@ Result<ResidualResponse> fit_residual_response(const std::vector<double>& freque
       const Fit found = fit(regressor(polynomial, u, taken), error.col(i).segment(w.first, w.bins));
       const Eigen::Index r = polynomial.cols();
       for (std::size_t s = 0; s < taken.size(); ++s) {
-        const Vector h = polynomial.cast<std::complex<double>>() * found.coefficients.segment(r * static_cast<Eigen::Index>(s + 1), r);
+        const Vector h = polynomial.cast<std::complex<double>>() *
+                         found.coefficients.segment(r * static_cast<Eigen::Index>(s + 1), r);
         out.response.col(static_cast<Eigen::Index>(taken[s]) * outputs + i).segment(w.first, w.bins) = h;
         rest.segment(w.first, w.bins) -= h.cwiseProduct(u.col(taken[s]));
       }
@@ -155,21 +165,25 @@ Result<ResidualResponse> fit_residual_response(const std::vector<double>& freque
   return out;
 }
 
-Matrix apply_residual_response(const ResidualResponse& fit, const std::vector<double>& frequency_hz, const Eigen::Ref<const Matrix>& error,
-                               const Eigen::Ref<const Matrix>& input) {
+Matrix apply_residual_response(const ResidualResponse& fit, const std::vector<double>& frequency_hz,
+                               const Eigen::Ref<const Matrix>& error, const Eigen::Ref<const Matrix>& input) {
   Matrix out = error;
   const auto& grid = fit.frequency_hz;
   const Eigen::Index outputs = error.cols();
   for (std::size_t m = 0; m < frequency_hz.size(); ++m) {
     const auto above = std::lower_bound(grid.begin(), grid.end(), frequency_hz[m]);
-    const auto hi = std::min<std::ptrdiff_t>(above - grid.begin(), static_cast<std::ptrdiff_t>(grid.size()) - 1);
+    const auto hi =
+        std::min<std::ptrdiff_t>(above - grid.begin(), static_cast<std::ptrdiff_t>(grid.size()) - 1);
     const auto lo = std::max<std::ptrdiff_t>(0, hi - 1);
     const double span = grid[static_cast<std::size_t>(hi)] - grid[static_cast<std::size_t>(lo)];
-    const double share = span > 0.0 ? std::clamp((frequency_hz[m] - grid[static_cast<std::size_t>(lo)]) / span, 0.0, 1.0) : 1.0;
+    const double share =
+        span > 0.0 ? std::clamp((frequency_hz[m] - grid[static_cast<std::size_t>(lo)]) / span, 0.0, 1.0)
+                   : 1.0;
     const auto at = static_cast<Eigen::Index>(m);
     for (const auto& [i, j] : fit.elements) {
       const Eigen::Index column = static_cast<Eigen::Index>(j) * outputs + i;
-      const std::complex<double> h = (1.0 - share) * fit.response(lo, column) + share * fit.response(hi, column);
+      const std::complex<double> h =
+          (1.0 - share) * fit.response(lo, column) + share * fit.response(hi, column);
       out(at, i) -= h * input(at, j);
     }
   }

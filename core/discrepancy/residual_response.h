@@ -17,10 +17,10 @@
 namespace fatmc {
 
 struct ResidualOptions {
-  int window = 24;        ///< bins
-  int order = 2;          ///< R
-  double level = 0.01;    ///< of all tests together
-  double material = 0.01; ///< least share of an output's error that an element must explain
+  int window = 24;         ///< bins
+  int order = 2;           ///< R
+  double level = 0.01;     ///< of all tests together
+  double material = 0.01;  ///< least share of an output's error that an element must explain
 };
 
 /// One element in one window.
@@ -32,21 +32,24 @@ struct ResidualPlace {
 };
 
 struct ResidualResponse {
-  std::vector<double> frequency_hz;                  ///< of the bins that windows cover
-  Eigen::MatrixXcd response;                         ///< bins x (outputs x inputs, column by column): H of the elements taken
-  std::vector<std::pair<int, int>> elements;         ///< taken: output, input; by what they explain
-  std::vector<double> explained;                     ///< share of the output's error, an element each
-  std::vector<ResidualPlace> places;                 ///< windows with a p-value that holds for all tests together
-  Eigen::VectorXd before, after, floor;              ///< of each output: error, error left, and what is incoherent, in |.|^2 over all bins
+  std::vector<double> frequency_hz;  ///< of the bins that windows cover
+  Eigen::MatrixXcd response;         ///< bins x (outputs x inputs, column by column): H of the elements taken
+  std::vector<std::pair<int, int>> elements;  ///< taken: output, input; by what they explain
+  std::vector<double> explained;              ///< share of the output's error, an element each
+  std::vector<ResidualPlace> places;          ///< windows with a p-value that holds for all tests together
+  Eigen::VectorXd before, after,
+      floor;  ///< of each output: error, error left, and what is incoherent, in |.|^2 over all bins
   Eigen::VectorXd output_energy;
   int tests = 0;
 };
 
 /// `error`, `output`: bins x outputs; `input`: bins x inputs; the bins ascend. Fails where they do not fill two windows or where a
 /// window has fewer bins than unknowns.
-Result<ResidualResponse> fit_residual_response(const std::vector<double>& frequency_hz, const Eigen::Ref<const Eigen::MatrixXcd>& error,
+Result<ResidualResponse> fit_residual_response(const std::vector<double>& frequency_hz,
+                                               const Eigen::Ref<const Eigen::MatrixXcd>& error,
                                                const Eigen::Ref<const Eigen::MatrixXcd>& output,
-                                               const Eigen::Ref<const Eigen::MatrixXcd>& input, const ResidualOptions& options);
+                                               const Eigen::Ref<const Eigen::MatrixXcd>& input,
+                                               const ResidualOptions& options);
 
 /// Error that is left of another record with the elements of a fit, interpolated in frequency: bins x outputs.
 Eigen::MatrixXcd apply_residual_response(const ResidualResponse& fit, const std::vector<double>& frequency_hz,

@@ -176,7 +176,7 @@ void Flight::fly_plant(PlantType plant, Path path, const Eigen::Ref<const Eigen:
   RandomStream imu_noise(trial, "imu");
   const bool windy = setup_.turbulence_m_s > 0.0;
   Dryden::StateVector air{};
-  if (windy) air = dryden_.start(gust_noise);
+  if (windy && !setup_.gusts_from_calm) air = dryden_.start(gust_noise);
   const AngleLimits angles(aircraft_.validity);
   internal::LimitCount count;
   std::array<double, 3> square_sum{};

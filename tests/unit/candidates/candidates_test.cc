@@ -1,0 +1,214 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "campaigns/base/prepared_trials.h"
+#include "campaigns/candidates/candidates_spec.h"
+#include "campaigns/candidates/flight_test.h"
+#include "campaigns/candidates/model_analysis.h"
+#include "campaigns/candidates/model_table.h"
+#include "campaigns/candidates/summary.h"
+#include "campaigns/candidates/trial.h"
+#include "coordinator/input/toml_file.h"
+
+namespace fatmc::candidates {
+namespace {
+
+CampaignSpec shipped_spec() {
+  return *decode_campaign(*read_toml_resolved("campaigns/candidates/spec.toml"));
+}
+
+Tree& at(Tree& tree, std::initializer_list<std::string_view> path) {
+  Tree* here = &tree;
+  for (const std::string_view key : path) here = const_cast<Tree*>(here->find(key));
+  return *here;
+}
+
+Tree integer(std::int64_t value) { return {value, {}, 0}; }
+
+/// Short windows and orders: a second of work.
+CampaignSpec tiny_spec() {
+  CampaignSpec spec = shipped_spec();
+  Tree& identification = at(spec.tree, {"identification"});
+  identification.set("past_high", integer(40));
+  identification.set("block", integer(2));
+  identification.set("order_low", integer(11));
+  identification.set("order_high", integer(18));
+  return spec;
+}
+
+CandidatesSpec decoded(const CampaignSpec& spec, std::uint32_t cell = 0) {
+  return *decode_candidates(*spec_of_cell(spec, cell));
+}
+
+TEST(CandidatesSpec, TheShippedOneHasTheWindowsAndModelsOfThePaper) {
+  const CandidatesSpec spec = decoded(shipped_spec());
+  ASSERT_EQ(spec.identification.pasts.size(), 99U);
+  EXPECT_EQ(spec.identification.pasts.front(), 994);
+  EXPECT_EQ(spec.identification.pasts[1], 990);
+  EXPECT_EQ(spec.identification.pasts.back(), 20);
+  const std::size_t windows = 99 * 100 / 2;  // f in M_p, f <= p
+  EXPECT_EQ(windows, 4950U);
+  EXPECT_EQ(windows * 13, 64350U);
+  EXPECT_EQ(std::lround(spec.selections[0].share * 4950), 750);
+  EXPECT_EQ(std::lround(spec.selections[1].share * 4950), 125);
+  EXPECT_EQ(spec.identification.blocks(), shipped_spec().cells.front().repetitions);
+}
+
+TEST(CandidatesSpec, BlocksHoldEveryPastOnceAndDescend) {
+  const Identification identification = decoded(shipped_spec()).identification;
+  std::vector<int> all;
+  for (std::size_t block = 0; block < identification.blocks(); ++block) {
+    const std::vector<int> pasts = identification.block_pasts(block);
+    all.insert(all.end(), pasts.begin(), pasts.end());
+  }
+  EXPECT_EQ(all, identification.pasts);
+  EXPECT_TRUE(identification.block_pasts(identification.blocks()).empty());
+}
+
+TEST(CandidatesSpec, WrongValuesAreRefusedWithTheirPlace) {
+  CampaignSpec spec = shipped_spec();
+  at(spec.tree, {"identification"}).set("past_high", integer(995));
+  const auto refused = prepare_trials(kTrialStudy, spec, 0);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("the largest for these sweeps is 994"), std::string::npos);
+  spec = shipped_spec();
+  at(spec.tree, {"model"}).set("outputs", at(spec.tree, {"model", "inputs"}));
+  const auto channels = prepare_trials(kTrialStudy, spec, 0);
+  ASSERT_FALSE(channels);
+  EXPECT_EQ(channels.error().key, "model.outputs");
+}
+
+TEST(FlightTest, SweepsAndMultistepsAreThoseOfTable1) {
+  const CampaignSpec spec = shipped_spec();
+  const CandidatesSpec own = decoded(spec);
+  const FlownTest flown = fly_test(own.truth, own.flight, spec.trial_seed({0, 0}));
+  ASSERT_EQ(flown.sweeps.size(), 8U);
+  Eigen::Index samples = 0;
+  for (const Maneuver& sweep : flown.sweeps) samples += sweep.samples();
+  EXPECT_EQ(samples, 19880);
+  EXPECT_EQ(largest_past_window(flown.sweeps), 994);
+  for (std::size_t j = 0; j < 8; ++j) {
+    const auto control = static_cast<Eigen::Index>(j / 2);
+    const double step = own.flight.multistep_amplitude_pct[j / 2];
+    const Eigen::VectorXd input = flown.multisteps[j].inputs.col(control);
+    EXPECT_DOUBLE_EQ(input.maxCoeff(), step);
+    EXPECT_DOUBLE_EQ(input.minCoeff(), -step);
+    EXPECT_EQ(input(60) > 0.0, j % 2 == 0);  // the second of a control begins the other way
+    // The primary control moves most; the others hold by pulses of 5 % at most.
+    for (Eigen::Index other = 0; other < kInputs; ++other) {
+      if (other == control) continue;
+      EXPECT_LE(flown.sweeps[j].inputs.col(other).cwiseAbs().maxCoeff(), 5.0);
+    }
+  }
+}
+
+TEST(FlightTest, WithoutNoiseAndGustsTheMultistepsAreTheModelsResponse) {
+  const CampaignSpec spec = shipped_spec();
+  CandidatesSpec own = decoded(spec);
+  own.flight.noise.assign(kOutputs, 0.0);
+  own.flight.gust_m_s = 0.0;
+  const FlownTest flown = fly_test(own.truth, own.flight, spec.trial_seed({0, 0}));
+  const auto validation = validate(own.truth.model, flown.multisteps);
+  ASSERT_TRUE(validation.has_value());
+  EXPECT_NEAR(validation->agreement, 1.0, 1e-9);
+  EXPECT_NEAR(validation->rms, 0.0, 1e-8);
+}
+
+TEST(FlightTest, TheScasFeedsBackTheMeasuredOutputsASampleLate) {
+  const CampaignSpec spec = shipped_spec();
+  CandidatesSpec own = decoded(spec, 1);
+  EXPECT_EQ(own.flight.scas, 1.0);
+  const FlownTest closed = fly_test(own.truth, own.flight, spec.trial_seed({1, 0}));
+  const Maneuver& step = closed.multisteps[0];
+  // Roll control of a pitch multistep: nothing but feedback, H (14).
+  for (Eigen::Index t = 1; t < 50; ++t) {
+    EXPECT_NEAR(step.inputs(t, 1), -60.0 * step.outputs(t - 1, 3) - 50.0 * step.outputs(t - 1, 6), 1e-12);
+  }
+}
+
+TEST(Analysis, TheTruthHasThePublishedModesAndNoArtifact) {
+  const CandidatesSpec own = decoded(shipped_spec());
+  const std::vector<Mode> modes = truth_modes(own.truth.model, own.truth.rate_hz);
+  const auto analysis = analyse(own.truth.model, own.truth.rate_hz, modes);
+  ASSERT_TRUE(analysis.has_value()) << analysis.error().message;
+  for (std::size_t i = 0; i < kTrackedModes.size(); ++i) {
+    EXPECT_NEAR(analysis->period_s[i], kTrackedModes[i].period_s, 1e-3 * kTrackedModes[i].period_s);
+    EXPECT_NEAR(analysis->damping[i], kTrackedModes[i].damping, 1e-3);
+  }
+  EXPECT_EQ(analysis->artifacts, 0);
+  EXPECT_EQ(analysis->level[0], 2);  // pitch, bare
+  EXPECT_EQ(analysis->level[1], 1);  // pitch, SCAS
+  EXPECT_EQ(analysis->level[2], 2);  // roll, SCAS: the lead-lag mode
+  EXPECT_EQ(analysis->approval[0], 2);
+  EXPECT_EQ(analysis->approval[1], 1);
+}
+
+TEST(Analysis, ASlowLightlyDampedModeThatTheTruthLacksIsAnArtifact) {
+  const std::vector<Mode> truth = {mode_of(19.2, -0.16), mode_of(4.4, 0.05), {{-0.5, 0.0}}};
+  EXPECT_EQ(count_artifacts(truth, truth), 0);
+  EXPECT_EQ(count_artifacts(std::vector<Mode>{mode_of(60.0, 0.02)}, truth), 1);
+  EXPECT_EQ(count_artifacts(std::vector<Mode>{mode_of(60.0, 0.5)}, truth), 0);  // no resonance
+  EXPECT_EQ(count_artifacts(std::vector<Mode>{mode_of(0.5, 0.02)}, truth), 0);  // not slow
+}
+
+TEST(CandidatesTrial, ARowHoldsEveryModelOfItsBlockAndDependsOnItsBlockAlone) {
+  const CampaignSpec spec = tiny_spec();
+  const auto cell = prepare_trials(kTrialStudy, spec, 0), again = prepare_trials(kTrialStudy, spec, 0);
+  ASSERT_TRUE(cell && again) << cell.error().text();
+  const TrialRow row = (*cell)->run(0);  // p = 40, 30: f = 20, 30, 40 and 20, 30
+  (*again)->run(1);
+  EXPECT_EQ(content_hash(row), content_hash((*again)->run(0)));
+  EXPECT_EQ(row.outcome, "ok");
+  ASSERT_NE(row.array(kPast), nullptr);
+  EXPECT_EQ(row.array(kPast)->size(), 5U * 8U);
+  EXPECT_EQ(row.array(kMagnitude)->size(), row.array(kAnalysed)->size() * kFrequencies);
+  EXPECT_EQ((*cell)->run(2).outcome, "no_block");
+  for (const auto& [name, values] : row.arrays) {
+    EXPECT_TRUE(std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) << name;
+  }
+}
+
+TEST(CandidatesTrial, TablesAndFiguresComeFromItsRows) {
+  CampaignSpec spec = tiny_spec();
+  spec.cells.resize(1);
+  const auto cell = prepare_trials(kTrialStudy, spec, 0);
+  ASSERT_TRUE(cell);
+  const std::vector<TrialRow> stored = {(*cell)->run(0), (*cell)->run(1), (*cell)->run(2)};
+  const RowSource rows = [&](std::uint32_t, const std::function<void(const TrialRow&)>& visit) {
+    for (const TrialRow& row : stored) visit(row);
+  };
+  const auto found = tables(spec, rows);
+  ASSERT_TRUE(found);
+  const auto count = std::count_if(found->begin(), found->end(), [](const TableRow& row) {
+    return row.table == "Fig. 4" && row.quantity == "median";
+  });
+  EXPECT_EQ(count, 8);  // n = 11 ... 18
+  const auto drawn = figures(spec, rows);
+  ASSERT_TRUE(drawn);
+  EXPECT_EQ(drawn->size(), 7U);
+}
+
+ModelRow model(int past, double agreement, double norm) {
+  return {past, 20, 12, ModelState::ok, agreement, 1.0, norm, -1};
+}
+
+TEST(Selection, BestByAgreementAloneAndBehindTheNormsLimit) {
+  ModelTable table;
+  table.models = {model(20, 0.80, 1e-12), model(30, 0.95, 1e-3), model(40, 0.90, 1e-12),
+                  model(50, 0.85, 1e-12)};
+  table.models.push_back({60, 20, 12, ModelState::not_identified, 0.0, 0.0, 0.0, -1});
+  table.models.push_back({20, 20, 18, ModelState::ok, 0.99, 1.0, 1e-12, -1});
+  const Selected selected = select(table, {12, 1e-10, 0.0, 0.4});  // two of five, failures among them
+  EXPECT_EQ(selected.all, (std::vector<std::size_t>{1, 2, 3, 0}));
+  EXPECT_EQ(selected.best, (std::vector<std::size_t>{1, 2}));
+  EXPECT_EQ(selected.accepted, (std::vector<std::size_t>{2, 3, 0}));
+  EXPECT_EQ(selected.candidates, (std::vector<std::size_t>{2, 3}));
+  const Selected quarter = select(table, {12, 0.0, 0.75, 0.4});  // of four that were identified
+  EXPECT_EQ(quarter.limit, 1e-3);
+  EXPECT_EQ(quarter.accepted, (std::vector<std::size_t>{2, 3, 0}));
+}
+
+}  // namespace
+}  // namespace fatmc::candidates

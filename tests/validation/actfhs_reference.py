@@ -1,0 +1,70 @@
+"""The modes of campaigns/models/actfhs_60kt.toml with scipy: those that H (Wartmann & Greiser) prints.
+
+The sampled model is taken back to continuous time by scipy's matrix logarithm. A mode s of a closed loop is found without
+building that loop: u = F(s) (r - K y) has a pole where I + F(s) K G(s) is singular, G(s) = C (sI - A)^-1 B, with the gains of
+H (14) and, for the optimized vehicle, the filter of H (15) as the rational function that it prints.
+"""
+import sys
+import tomllib
+
+import numpy as np
+import scipy.linalg as sl
+
+with open("campaigns/models/actfhs_60kt.toml", "rb") as f:
+    model = tomllib.load(f)
+a, b, c = (np.array(model[name]) for name in "ABC")
+n, n_u = b.shape
+held = np.block([[a, b], [np.zeros((n_u, n)), np.eye(n_u)]])
+rate = sl.logm(held).real * model["rate_hz"]
+a, b = rate[:n, :n], rate[:n, n:]
+
+out = {name: i for i, name in enumerate(model["outputs"])}
+gain = np.zeros((4, 8))
+gain[0, out["q"]], gain[0, out["theta"]] = 50, 60
+gain[1, out["p"]], gain[1, out["phi"]] = 60, 50
+gain[2, out["r"]] = 50
+
+
+def band_stop(s):
+    return 1 + 0.9 * (0.4 * s**2 - 6 * s) / (s**2 + 2 * 0.6 * 12.6 * s + 12.6**2)
+
+
+def pole(period, damping):
+    w = 2 * np.pi / period
+    return complex(-damping / np.sqrt(1 - damping**2) * w, w)
+
+
+def return_difference(s, filtered):
+    g = c @ np.linalg.solve(s * np.eye(n) - a, b)
+    f = np.diag([1, band_stop(s) if filtered else 1, 1, 1])
+    return np.linalg.det(np.eye(n_u) + f @ gain @ g)
+
+
+worst = 0.0
+
+
+def check(name, s, wanted):
+    global worst
+    period, damping = 2 * np.pi / s.imag, -s.real / abs(s)
+    error = max(abs(period / wanted[0] - 1), abs(damping - wanted[1]))
+    worst = max(worst, error)
+    print(f"{name:28s} T {period:8.4f} s  D {damping:8.5f}  printed {wanted[0]} s, {wanted[1]}")
+
+
+values = np.linalg.eigvals(a)
+check("phugoid, bare", values[np.argmin(abs(values - pole(19.2, -0.16)))], (19.2, -0.16))
+for name, filtered, wanted in [("phugoid, SCAS", False, (4.9, 0.4)), ("roll/flap, SCAS", False, (0.45, 0.32)),
+                               ("lead-lag, SCAS", False, (0.55, 0.03)), ("roll/flap, SCAS and filter", True, (0.43, 0.58))]:
+    one, two = pole(*wanted) * 1.01, pole(*wanted) * 0.995  # secant iteration from beside the printed pole
+    for _ in range(40):
+        f_one, f_two = return_difference(one, filtered), return_difference(two, filtered)
+        if abs(two - one) < 1e-12 * abs(two) or f_two == f_one:
+            break
+        one, two = two, two - f_two * (two - one) / (f_two - f_one)
+    assert abs(return_difference(two, filtered)) < 1e-8, "not a pole"
+    check(name, two, wanted)
+lead_lag = values[np.argmin(abs(values - 12j))]
+print(f"bare lead-lag {abs(lead_lag):.3f} rad/s, D {-lead_lag.real / abs(lead_lag):.4f}")
+assert abs(abs(lead_lag) - 12) < 0.3
+print(f"largest error of T (relative) and D: {worst:.2g}")
+sys.exit(0 if worst < 1e-3 else 1)
