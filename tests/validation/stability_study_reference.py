@@ -195,6 +195,19 @@ def bounds(fatmc):
     return 0
 
 
+def ssv(fatmc, x, radii):
+    """Upper bound by the program itself; x ... x in x out, radii ... x out x in."""
+    loops, w = x.reshape(-1, 9), radii.swapaxes(-1, -2).reshape(-1, 9)
+    head = ["id"] + [f"X{part}{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3) for part in ("re", "im")]
+    head += [f"w_out{i}_in{j}" for j in (1, 2, 3) for i in (1, 2, 3)]
+    columns = np.column_stack([np.arange(len(loops)), loops.view(float), w])
+    with tempfile.TemporaryDirectory() as folder:
+        np.savetxt(f"{folder}/f.csv", columns, delimiter=",", header=",".join(head), comments="", fmt=["%d"] + ["%.17g"] * 27)
+        subprocess.run([fatmc, "ssv", f"{folder}/f.csv", "-o", f"{folder}/o.csv"], cwd=ROOT, capture_output=True)
+        rows = pathlib.Path(f"{folder}/o.csv").read_text(encoding="utf-8").split()[1:]
+    return np.array([float(row.split(",")[1]) for row in rows]).reshape(radii.shape[:-2])
+
+
 def lag(fatmc, database):
     a = coverage_reference.arrays(database)
     truth = true_response(fatmc)
@@ -203,9 +216,12 @@ def lag(fatmc, database):
     for ticks in (0.0, 1.0, 1.5, 2.0):
         nominal = truth * np.exp(2j * np.pi * F * 0.02 * ticks)[:, None, None]
         x = np.linalg.solve(np.eye(3) + k @ nominal, np.broadcast_to(k, nominal.shape))
+        x = np.ascontiguousarray(np.broadcast_to(x, estimate.shape))
         median = decibel(np.median(h_infinity(x, abs(estimate - nominal)), 0))
+        below = median - decibel(np.median(ssv(fatmc, x, abs(estimate - nominal)), 0))
         print(f"G_n {ticks} ticks ahead: median of nominal H-infinity, dB: " +
-              ", ".join(f"{median[abs(F - f).argmin()]:.1f} at {f} Hz" for f in (0.285, 0.34, 0.5, 1.0, 2.0, 2.89)))
+              ", ".join(f"{median[abs(F - f).argmin()]:.1f} at {f} Hz" for f in (0.285, 0.34, 0.5, 1.0, 2.0, 2.89)) +
+              f"; ssv {below.mean():.1f} dB below")
     return 0
 
 
