@@ -23,7 +23,7 @@ struct Place {
 constexpr std::array kPlaces = {
     Place{"phugoid", 0, 0.082, "zeros beside the phugoid shape the peak, and are not printed"},
     Place{"short period", 0, 0.48,
-          "zero for a linear plant: what is left is the amplitude's, which is not printed"},
+          "nil for a linear plant: what is left is the servos' rate limit, which hangs on the amplitude"},
     Place{"zero of r/zeta", 1, 0.050,
           "the zero stands at the border line: runs scatter by more than the printed error, and the mean by "
           "a lot"},
@@ -56,10 +56,10 @@ class CellTables {
 
   void add_table_4_3() {
     for (std::size_t r = 0; r < kResponses.size(); ++r) {
-      statistic("4-3", row_of(r), "mean magnitude error", "dB",
-                "an effect of the amplitude, which is not printed: it grows with its square and is nil for a "
-                "linear plant",
-                [&, r](Picks picks) { return mean_of(mean_error(runs_, r, picks).magnitude_db); });
+      statistic(
+          "4-3", row_of(r), "mean magnitude error", "dB",
+          "servo rate limits: nil for a linear plant and at half the amplitude, which is not printed",
+          [&, r](Picks picks) { return mean_of(mean_error(runs_, r, picks).magnitude_db); });
     }
   }
 
