@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "campaigns/base/decoder.h"
+#include "campaigns/base/effect_tables.h"
 
 namespace fatmc {
 namespace {
@@ -101,6 +102,20 @@ const Imu* AircraftModel::imu(std::string_view grade) const {
   return at == imus.end() ? nullptr : &*at;
 }
 
+Result<ModifiedFlight> modified_flight(const AircraftModel& model, const FlightSetup& setup,
+                                       std::span<const Effect> further) {
+  std::vector<Effect> effects = model.effects;
+  effects.insert(effects.end(), further.begin(), further.end());
+  return apply(model.aircraft, setup, effects);
+}
+
+Result<Flight> prepare_flight(const AircraftModel& model, const FlightSetup& setup,
+                              std::span<const Effect> further) {
+  const Result<ModifiedFlight> modified = modified_flight(model, setup, further);
+  if (!modified) return fail(modified.error());
+  return Flight::prepare(modified->aircraft, modified->setup);
+}
+
 Result<AircraftModel> decode_aircraft_model(const Tree& tree) {
   AircraftModel model;
   Aircraft& a = model.aircraft;
@@ -146,7 +161,11 @@ Result<AircraftModel> decode_aircraft_model(const Tree& tree) {
       section(grades, grade, [&](Decoder& in) { model.imus.push_back(imu_grade(in, grade)); });
     }
   });
+  const std::vector<const Tree*> effects = top.tables("effect", false);
   if (const Status status = top.finish(); !status) return fail(status.error());
+  Result<std::vector<Effect>> decoded = decode_effects(effects);
+  if (!decoded) return fail(decoded.error());
+  model.effects = std::move(*decoded);
   if (Status status = check(a); !status) {
     Error error = status.error();
     error.file = tree.file;

@@ -101,6 +101,9 @@ Result<Experiment> decode_experiment(const Tree& tree, const AircraftModel& mode
   if (const Tree* environment = top.table("environment", false)) {
     Decoder table(*environment, "environment");
     out.flight.turbulence_m_s = table.real("turbulence_sigma_m_s", {.low = 0.0, .high = 20.0}, 0.0);
+    if (table.choice("gusts", {"all", "longitudinal"}, "all") == "longitudinal")
+      out.flight.gusts = FlightSetup::Gusts::longitudinal;
+    out.flight.gusts_from_calm = table.boolean("gusts_from_calm", false);
     top.take(table.finish());
   }
   if (const Tree* imu = top.table("imu", false)) {

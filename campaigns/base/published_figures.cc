@@ -18,6 +18,7 @@ Result<std::vector<PublishedFigure>> decode_published(const CampaignSpec& spec) 
     figure.quantity = table.text("quantity");
     figure.unit = table.text("unit");
     figure.value = table.real("value");
+    figure.upper_bound = table.boolean("bound", false);
     figure.source = table.text("source");
     top.take(table.finish());
     figures.push_back(std::move(figure));

@@ -12,7 +12,8 @@ namespace fatmc {
 struct PublishedFigure {
   std::string table, row, quantity, unit;
   double value = 0.0;
-  std::string source;  ///< line of the source text
+  bool upper_bound = false;  ///< "< value" is printed: `bound = true`
+  std::string source;        ///< line of the source text
 };
 
 /// Empty when the spec names no published figures.

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cstring>
 
+#include "core/base/check.h"
+
 namespace fatmc {
 namespace {
 
@@ -41,6 +43,19 @@ const std::vector<double>* TrialRow::array(std::string_view name) const {
     if (key_name == name) return &values;
   }
   return nullptr;
+}
+
+const std::vector<double>& array_of(const TrialRow& row, std::string_view name) {
+  const std::vector<double>* values = row.array(name);
+  FATMC_CHECK(values != nullptr, "a row that is ok holds all arrays of its study");
+  return *values;
+}
+
+double metric_of(const TrialRow& row, std::string_view name) {
+  for (const auto& [key, value] : row.metrics) {
+    if (key == name) return value;
+  }
+  FATMC_CHECK(false, "a row that is ok holds all metrics of its study");
 }
 
 Sha256 content_hash(const TrialRow& row) {

@@ -30,6 +30,10 @@ struct TrialRow {
   bool operator==(const TrialRow&) const = default;
 };
 
+/// The array or metric that every row of its study with outcome "ok" holds; a missing one is a broken invariant.
+const std::vector<double>& array_of(const TrialRow& row, std::string_view name);
+double metric_of(const TrialRow& row, std::string_view name);
+
 using Sha256 = std::array<std::uint8_t, 32>;
 
 /// SHA-256 of the row: key, outcome, detail, metrics and arrays as bits (little endian, lengths in front), so

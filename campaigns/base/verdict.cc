@@ -77,8 +77,9 @@ void fill_share(TableRow& row, std::uint64_t hits, std::uint64_t runs, std::uint
   constexpr double z = 1.959963984540054;
   const double centre = (share + z * z / (2.0 * m)) / (1.0 + z * z / m);
   const double half = z / (1.0 + z * z / m) * std::sqrt(share * (1.0 - share) / m + z * z / (4.0 * m * m));
-  row.low = 100.0 * std::max(0.0, centre - half);
-  row.high = 100.0 * std::min(1.0, centre + half);
+  // All or none: the end of the interval is the share itself, which rounding would put just inside.
+  row.low = hits == 0 ? 0.0 : 100.0 * std::max(0.0, centre - half);
+  row.high = hits == runs ? 100.0 : 100.0 * std::min(1.0, centre + half);
 }
 
 void judge(TableRow& row, bool alike, std::string_view reason) {
@@ -96,6 +97,13 @@ void judge(TableRow& row, bool alike, std::string_view reason) {
 }
 
 void judge_by_order(TableRow& row, std::string_view reason) { judge(row, same_order(row), reason); }
+
+void judge_upper_bound(TableRow& row, std::string_view reason) {
+  if (std::isnan(row.published)) return;
+  add_reason(row, "printed is a bound, less than");
+  if (!(row.low < row.published)) return judge(row, same_order(row), reason);
+  row.verdict = "match";
+}
 
 void judge_by_side(TableRow& row, double nominal, std::string_view reason) {
   judge(row, (row.published - nominal) * (row.value - nominal) > 0.0, reason);

@@ -38,6 +38,9 @@ void judge(TableRow& row, bool alike, std::string_view reason);
 /// `alike` = same sign and order of magnitude: |log10(value / published)| <= 1/2; published 0: never.
 void judge_by_order(TableRow& row, std::string_view reason);
 
+/// "Less than row.published" is printed: `match` where the interval begins below that; else `shape` by order, or `differs`.
+void judge_upper_bound(TableRow& row, std::string_view reason);
+
 /// `alike` = both on the same side of a nominal value (75 % of a nominal 75 % region).
 void judge_by_side(TableRow& row, double nominal, std::string_view reason);
 

@@ -22,6 +22,7 @@ Status apply_overrides(const Tree& tree, std::span<const char* const> own_keys, 
       table.real("turbulence_sigma_m_s", {.low = 0.0, .high = 20.0}, flight.turbulence_m_s);
   flight.step_s = table.real("rk4_step_s", {.low = 1e-5, .high = 0.1}, flight.step_s);
   flight.turn_coordinator = table.boolean("turn_coordinator", flight.turn_coordinator);
+  flight.gusts_from_calm = table.boolean("gusts_from_calm", flight.gusts_from_calm);
   if (table.has("amplitude_rad_s")) {
     const std::vector<double> amplitude = table.reals("amplitude_rad_s", 3, {.low = 0.0, .high = 10.0});
     std::copy(amplitude.begin(), amplitude.end(), experiment.excitation.amplitude_rad_s.begin());
@@ -58,8 +59,8 @@ Result<FlownCell> decode_flown_cell(const CampaignSpec& spec, std::uint32_t cell
   FlownCell out;
   auto aircraft = decode_aircraft_model(*model);
   if (!aircraft) return fail(aircraft.error());
-  out.aircraft = aircraft->aircraft;
-  auto decoded = decode_experiment(*experiment, *aircraft);
+  out.model = std::move(*aircraft);
+  auto decoded = decode_experiment(*experiment, out.model);
   if (!decoded) return fail(decoded.error());
   out.experiment = std::move(*decoded);
   if (Status status = apply_overrides(spec.cells.at(cell).tree, own_keys, out.experiment); !status)

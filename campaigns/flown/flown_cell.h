@@ -12,6 +12,7 @@
 #include <span>
 #include <string_view>
 
+#include "campaigns/base/aircraft_model.h"
 #include "campaigns/base/campaign_spec.h"
 #include "campaigns/base/experiment.h"
 #include "core/base/error.h"
@@ -21,15 +22,15 @@
 namespace fatmc {
 
 struct FlownCell {
-  Aircraft aircraft;
+  AircraftModel model;
   Experiment experiment;
   LpmOptions estimator;
   bool speed_correction = true;
 };
 
 /// Decodes the tables `model`, `experiment` and `estimator` of the spec; a cell may override `plant`,
-/// `ranges_hz`, `amplitude_rad_s`, `turbulence_sigma_m_s`, `rk4_step_s` and `turn_coordinator` of the
-/// experiment, and say `compare = false` where it is no repetition of what is published
+/// `ranges_hz`, `amplitude_rad_s`, `turbulence_sigma_m_s`, `rk4_step_s`, `turn_coordinator` and
+/// `gusts_from_calm` of the experiment, and say `compare = false` where it is no repetition of what is published
 /// (published_figures.h).
 /// `own_tables` and `own_keys` (of the cell) belong to the study, which decodes them itself.
 Result<FlownCell> decode_flown_cell(const CampaignSpec& spec, std::uint32_t cell,

@@ -23,7 +23,7 @@ Result<std::unique_ptr<const FlownFlights>> FlownFlights::prepare(const Campaign
     const Tree* table = spec.tree.find(key);
     return table != nullptr ? Error{table->file, table->line, key, error.message} : error;
   };
-  auto flight = Flight::prepare(cell.aircraft, cell.experiment.flight);
+  auto flight = prepare_flight(cell.model, cell.experiment.flight);
   if (!flight) {
     Error error =
         locate_flight_error(flight.error(), *spec.tree.find("model"), *spec.tree.find("experiment"));
@@ -86,7 +86,7 @@ const FrmEstimate* FlownFlights::estimate(Workspace& workspace, TrialRow& row) c
   }
   // (3.4): the response grows with airspeed; refer it to the trim speed.
   if (cell_.speed_correction)
-    scale_response(frm, flight_.aircraft().speed_m_s / record.auxiliary.col(2).mean());
+    scale_response(frm, cell_.model.aircraft.speed_m_s / record.auxiliary.col(2).mean());
   return &frm;
 }
 
@@ -109,7 +109,7 @@ TrialRecord FlownFlights::record(std::uint64_t repetition) const {
   const Lease workspace = borrow();
   const TrialSeed trial = seed(repetition);
   flight_.fly(reference_signal(cell_.experiment, trial), trial, workspace->record);
-  return trial_record(workspace->record, cell_.experiment, flight_.aircraft());
+  return trial_record(workspace->record, cell_.experiment, cell_.model.aircraft);
 }
 
 }  // namespace fatmc

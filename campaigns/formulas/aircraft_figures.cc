@@ -128,24 +128,28 @@ StudyFigure closed_loops(const std::vector<double>& f, const std::vector<Eigen::
 
 StudyFigure coordinator_difference(const std::vector<double>& f, const std::vector<Eigen::Matrix3cd>& with,
                                    const std::vector<Eigen::Matrix3cd>& without) {
-  std::vector<std::complex<double>> ratio, difference;
+  plot::Line magnitude{"", f, {}}, phase{"", f, {}};
   for (std::size_t k = 0; k < f.size(); ++k) {
-    ratio.push_back(with[k](2, 0) / without[k](2, 0));
-    difference.push_back(with[k](2, 0) - without[k](2, 0));
+    const std::complex<double> ratio = with[k](2, 0) / without[k](2, 0);
+    magnitude.y.push_back(20.0 * std::log10(std::abs(ratio)));
+    phase.y.push_back(std::arg(ratio) * 180.0 / std::numbers::pi);
   }
   StudyFigure out{"Fig. A-5",
-                  "r / p_c of the closed loop with the turn coordinator, relative to that without (ratio in "
-                  "dB and degrees), "
-                  "and the absolute difference. T names neither; its text places the larger difference "
-                  "between 1 and 10 Hz.",
+                  "Response of r to p_c in the closed loop with turn coordinator, relative to that without: "
+                  "gain 0.5 s/rad, "
+                  "linearised in level flight, sampled. T's text places the larger part \"from 1 to 10 Hz\"; "
+                  "here it lies "
+                  "between 1 and 10 rad/s.",
                   {}};
   out.figure.title = "Additional dynamics in r / p_c by the turn coordinator";
   out.figure.columns = 2;
-  for (const auto& [name, values] : {std::pair{"ratio", ratio}, std::pair{"difference", difference}}) {
-    BodePanels pair = bode_panels(name, f, {{"", plot::Hue::blue, plot::Dash::solid, values}});
-    out.figure.panels.push_back(std::move(pair.magnitude));
-    out.figure.panels.push_back(std::move(pair.phase));
-  }
+  plot::Panel decibel, degrees;
+  decibel.x = degrees.x = {"f, Hz", plot::Scale::logarithmic, {}, {}};
+  decibel.y.label = "ratio, dB";
+  degrees.y.label = "ratio, deg";
+  decibel.marks.emplace_back(std::move(magnitude));
+  degrees.marks.emplace_back(std::move(phase));
+  out.figure.panels = {std::move(decibel), std::move(degrees)};
   return out;
 }
 

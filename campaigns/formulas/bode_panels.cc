@@ -8,6 +8,8 @@
 namespace fatmc {
 namespace {
 
+// Elements that vanish by symmetry are round-off of any size below this.
+constexpr double kRoundOff = 1e-9;
 constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 
 double wrapped_deg(std::complex<double> g) {
@@ -16,8 +18,6 @@ double wrapped_deg(std::complex<double> g) {
 }
 
 void add_curve(const std::vector<double>& f, const BodeCurve& curve, BodePanels& out) {
-  // Elements that vanish by symmetry are round-off of any size below this.
-  constexpr double kRoundOff = 1e-9;
   plot::Line magnitude{curve.name, f, {}, curve.hue, curve.dash};
   plot::Line phase{curve.name, {}, {}, curve.hue, curve.dash};
   double before = kGap;
@@ -50,6 +50,14 @@ BodePanels bode_panels(const std::string& title, const std::vector<double>& freq
   out.phase.y = {
       "phase, deg", plot::Scale::linear, plot::Range{-360.0, 0.0}, {-360.0, -270.0, -180.0, -90.0, 0.0}};
   for (const BodeCurve& curve : curves) add_curve(frequency_hz, curve, out);
+  const auto vanishes = [](const BodeCurve& curve) {
+    return std::none_of(curve.response.begin(), curve.response.end(),
+                        [](auto g) { return std::abs(g) > kRoundOff; });
+  };
+  if (std::all_of(curves.begin(), curves.end(), vanishes)) {
+    out.magnitude.title += ": zero";
+    out.magnitude.y.range = plot::Range{-40.0, 0.0};
+  }
   return out;
 }
 

@@ -14,14 +14,15 @@ struct BodeCurve {
   std::string name;
   plot::Hue hue = plot::Hue::blue;
   plot::Dash dash = plot::Dash::solid;
-  std::vector<std::complex<double>> response;  ///< zeros (and round-off, below 1e-9 of the largest) are gaps
+  std::vector<std::complex<double>> response;  ///< zeros (round-off below 1e-9) are gaps
 };
 
 struct BodePanels {
   plot::Panel magnitude, phase;
 };
 
-/// Phases lie in (-360, 0] degrees; where they jump between the ends the line breaks.
+/// Phases lie in (-360, 0] degrees; where they jump between the ends the line breaks. A response that vanishes everywhere
+/// says so in the title.
 BodePanels bode_panels(const std::string& title, const std::vector<double>& frequency_hz,
                        const std::vector<BodeCurve>& curves);
 

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "campaigns/formulas/design_tables.h"
 #include "campaigns/formulas/lightly_damped.h"
 #include "campaigns/formulas/printed_row.h"
 #include "campaigns/formulas/published.h"
@@ -159,6 +160,8 @@ std::vector<TableRow> formula_tables() {
   add_table_2_3(rows);
   add_table_2_4(rows);
   add_table_3_1(rows);
+  const std::vector<TableRow> designs = design_tables();
+  rows.insert(rows.end(), designs.begin(), designs.end());
   add_numbers_of_figures(rows);
   return rows;
 }

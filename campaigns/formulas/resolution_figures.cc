@@ -61,7 +61,7 @@ StudyFigure figure_2_34() {
   panel.marks.emplace_back(
       plot::Points{"aeroelastic mode, 2 Hz, 0.05", {2.0}, {0.05}, plot::Hue::red, false, 4.0});
   return one_panel(
-      "Fig. 2-34", "Damping at which a peak between two lines exceeds them by 3 dB",
+      "Fig. 2-34", "Damping that hides 3 dB between two lines",
       "Peaks below a curve may hide more than 3 dB between two lines. Printed is Δf/(4π f0), a factor 2π too "
       "small (B_3dB = 2ζ f0 in Hz); the aeroelastic mode lies above all curves nevertheless.",
       std::move(panel));

@@ -23,6 +23,7 @@ Exit report(const Error& error);
 
 void add_linearize_command(CLI::App& app, Exit& exit);
 void add_simulate_command(CLI::App& app, Exit& exit);
+void add_diagnose_command(CLI::App& app, Exit& exit);
 void add_design_command(CLI::App& app, Exit& exit);
 void add_noise_command(CLI::App& app, Exit& exit);
 void add_estimate_command(CLI::App& app, Exit& exit);

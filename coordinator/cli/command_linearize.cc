@@ -21,13 +21,14 @@ struct Linearization {
   Aircraft aircraft;
   Trim trim;
   LinearModel continuous, sampled;
+  std::vector<std::string> not_linear;
 };
 
 Result<Linearization> linearization(const std::string& path) {
   Result<TrimmedAircraft> read = read_trimmed_aircraft(path);
   if (!read) return fail(read.error());
   return Linearization{read->aircraft, read->trim, linearize(read->aircraft, read->trim),
-                       sample(read->aircraft, read->trim, kTickSeconds, 1)};
+                       sample(read->aircraft, read->trim, kTickSeconds, 1), read->not_linear};
 }
 
 template <typename Matrix>
@@ -71,6 +72,7 @@ void print_json(const Linearization& of) {
                     {"B", rows(of.sampled.b)},
                     {"C", rows(of.sampled.c)},
                     {"D", rows(of.sampled.d)}};
+  if (!of.not_linear.empty()) out["effects_not_shown"] = of.not_linear;
   std::cout << out.dump() << "\n";
 }
 
@@ -138,7 +140,11 @@ void print_text(const Linearization& of) {
       "N\n",
       of.aircraft.name.c_str(), shortest(of.aircraft.speed_m_s).c_str(), of.trim.alpha_rad * 180.0 / kPi,
       of.trim.eta_rad, of.trim.throttle, of.trim.thrust_n);
-  std::printf("trim: %d iterations, residual %.1e\n\n", of.trim.iterations, of.trim.residual);
+  std::printf("trim: %d iterations, residual %.1e\n", of.trim.iterations, of.trim.residual);
+  for (const std::string& effect : of.not_linear) {
+    std::printf("not in the linear airframe: %s (fatmc simulate flies it)\n", effect.c_str());
+  }
+  std::printf("\n");
   if (of.aircraft.name == "FAT") {
     print_beside_published(of);
     std::printf("\n");

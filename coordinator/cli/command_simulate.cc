@@ -12,6 +12,7 @@
 #include "coordinator/input/record_file.h"
 #include "coordinator/input/toml_file.h"
 #include "core/base/text.h"
+#include "core/flight/effects/listing.h"
 #include "core/record/column_file.h"
 
 namespace fatmc::cli {
@@ -19,6 +20,7 @@ namespace {
 
 struct Options {
   std::string model, experiment, record;
+  std::vector<std::string> effects;
   std::int64_t seed = 0;
   std::int64_t repetition = 0;
 };
@@ -41,7 +43,13 @@ Result<Flown> fly(const Options& options) {
   auto experiment = decode_experiment(*experiment_tree, out.model);
   if (!experiment) return fail(experiment.error());
   out.experiment = std::move(*experiment);
-  auto flight = Flight::prepare(out.model.aircraft, out.experiment.flight);
+  std::vector<Effect> effects;
+  for (const std::string& text : options.effects) {
+    auto effect = parse_effect(text);
+    if (!effect) return fail(Error{"--effect", 0, effect.error().key, effect.error().message});
+    effects.push_back(std::move(*effect));
+  }
+  auto flight = prepare_flight(out.model, out.experiment.flight, effects);
   if (!flight) return fail(locate_flight_error(flight.error(), *model_tree, *experiment_tree));
   // A record of no campaign: study and cell are those of this command.
   const TrialSeed seed{static_cast<std::uint64_t>(options.seed), name_hash("simulate"), 0,
@@ -67,6 +75,18 @@ Status check_targets(const std::string& csv_path, const std::string& toml_path) 
 }
 
 Exit run(const Options& options) {
+  if (options.effects == std::vector<std::string>{"list"}) {
+    std::fputs(effect_listing().c_str(), stdout);
+    return Exit::done;
+  }
+  if (options.effects == std::vector<std::string>{"table"}) {
+    std::fputs(effect_table_markdown().c_str(), stdout);
+    return Exit::done;
+  }
+  if (options.model.empty() || options.experiment.empty() || options.record.empty()) {
+    return report(
+        Error{"", 0, "simulate", "needs MODEL, EXPERIMENT and -o RECORD.csv (or --effect list alone)"});
+  }
   const std::string toml_path = record_toml_beside(options.record);
   if (toml_path == options.record) {
     return report(Error{options.record, 0, "-o",
@@ -105,17 +125,26 @@ Exit run(const Options& options) {
 void add_simulate_command(CLI::App& app, Exit& exit) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("simulate", "fly one experiment and write it as a record");
-  command->add_option("MODEL", options->model, "aircraft (TOML)")->required();
-  command->add_option("EXPERIMENT", options->experiment, "experiment (TOML)")->required();
+  command->add_option("MODEL", options->model, "aircraft (TOML)");
+  command->add_option("EXPERIMENT", options->experiment, "experiment (TOML)");
   command->add_option("--seed", options->seed, "seed of excitation, turbulence and sensor noise")
       ->capture_default_str();
   command->add_option("--repetition", options->repetition, "another draw of the same seed")
       ->capture_default_str();
-  command->add_option("-o,--output", options->record, "RECORD.csv; RECORD.toml is written beside it")
-      ->required();
+  command->add_option("-o,--output", options->record, "RECORD.csv; RECORD.toml is written beside it");
+  command
+      ->add_option("--effect", options->effects,
+                   "an effect that the model lacks, ID:name=value,...; may be repeated; \"list\" prints "
+                   "them, \"table\" as "
+                   "the table of docs/effects.md")
+      ->allow_extra_args(false);
   command->footer(
-      "Example: fatmc simulate campaigns/models/fat.toml campaigns/experiments/chapter5.toml --seed 1 -o "
-      "flight.csv");
+      "Examples: fatmc simulate campaigns/models/fat.toml campaigns/experiments/chapter5.toml --seed 1 -o "
+      "flight.csv\n"
+      "          fatmc simulate campaigns/models/fat.toml campaigns/experiments/chapter5.toml --effect "
+      "transport_delay:delay_s=0.03 --effect control_effectiveness:axis=pitch,factor=0.8,onset_s=200 -o "
+      "late.csv\n"
+      "          fatmc simulate --effect list");
   command->callback([options, &exit] { exit = run(*options); });
 }
 

@@ -63,7 +63,7 @@ Result<DesignedExperiment> design_experiment(const std::string& experiment_path,
   if (!tree) return fail(tree.error());
   const auto experiment = decode_experiment(*tree, *model);
   if (!experiment) return fail(experiment.error());
-  const auto flight = Flight::prepare(model->aircraft, experiment->flight);
+  const auto flight = prepare_flight(*model, experiment->flight);
   if (!flight) return fail(locate_flight_error(flight.error(), *model_tree, *tree));
   const Excitation& excitation = experiment->excitation;
   Result<LpmGrid> grid = LpmGrid::create(

@@ -25,6 +25,7 @@ int run(int argc, char** argv) {
   add_extend_command(app, exit);
   add_explain_command(app, exit);
   add_linearize_command(app, exit);
+  add_diagnose_command(app, exit);
   add_design_command(app, exit);
   add_simulate_command(app, exit);
   add_estimate_command(app, exit);

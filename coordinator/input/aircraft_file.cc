@@ -15,7 +15,9 @@ Result<TrimmedAircraft> read_trimmed_aircraft(const std::string& path) {
 Result<TrimmedAircraft> decode_trimmed_aircraft(const Tree& tree, const std::string& path) {
   Result<AircraftModel> model = decode_aircraft_model(tree);
   if (!model) return fail(model.error());
-  const Trim trim = trim_level(model->aircraft);
+  const Result<ModifiedFlight> modified = modified_flight(*model, FlightSetup{});
+  if (!modified) return fail(Error{path, 0, modified.error().key, modified.error().message});
+  const Trim trim = trim_level(modified->aircraft);
   if (!trim.usable()) {
     return fail(Error{path, 0, "trim.speed_m_s",
                       trim.outcome == Trim::Outcome::outside_model
@@ -23,7 +25,11 @@ Result<TrimmedAircraft> decode_trimmed_aircraft(const Tree& tree, const std::str
                           : "no level flight found: residual " + significant(trim.residual, 3) + " after " +
                                 std::to_string(trim.iterations) + " iterations"});
   }
-  return TrimmedAircraft{model->aircraft, trim};
+  TrimmedAircraft out{modified->aircraft, trim, {}};
+  for (const Effect& effect : model->effects) {
+    if (!effect.kind().in_linear_airframe || effect.onset) out.not_linear.push_back(effect.text());
+  }
+  return out;
 }
 
 }  // namespace fatmc

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "campaigns/base/tree.h"
 #include "core/base/error.h"
@@ -11,8 +12,11 @@
 namespace fatmc {
 
 struct TrimmedAircraft {
-  Aircraft aircraft;
-  Trim trim;  ///< usable
+  Aircraft aircraft;  ///< with the effects of the model
+  Trim trim;          ///< usable
+  /// Effects of the model that the linearised airframe does not show: delays and lags in the signal path, modes with states of
+  /// their own, what vanishes for small motions, what changes in flight.
+  std::vector<std::string> not_linear;
 };
 
 /// The error names the key that is wrong, or says why there is no level flight at the model's speed.

@@ -127,7 +127,10 @@ std::string legend(const Figure& figure, double top, double width, double& heigh
 std::string document(const Figure& figure, const std::string& style, const std::string& id) {
   FATMC_CHECK(figure.columns >= 1 && !figure.panels.empty(), "a grid of panels");
   const int rows = (static_cast<int>(figure.panels.size()) + figure.columns - 1) / figure.columns;
-  const double width = figure.columns * figure.panel_width + kEdge;
+  // A title or a note that is longer than the panels are wide is not cut off.
+  const double width = std::max({figure.columns * figure.panel_width + kEdge,
+                                 1.25 * kCharacter * letters(figure.title) + 2.0 * kEdge,
+                                 kCharacter * letters(figure.note) + 2.0 * kEdge});
   double top = kEdge;
   std::string body;
   if (!figure.title.empty()) {

@@ -86,8 +86,10 @@ std::string section(const CampaignPage& campaign) {
            std::to_string(campaign.planned) +
            " trials are stored; every table and figure below is of these alone.</p>\n";
   }
+  if (!campaign.figures.empty()) out += "<div class=\"figures\">\n";
   for (const StudyFigure& figure : campaign.figures)
     out += html::figure(figure.figure, figure_name(campaign, figure), figure.id, figure.caption);
+  if (!campaign.figures.empty()) out += "</div>\n";
   out += html_tables(campaign.rows, id_of(campaign));
   for (const CellPage& cell : campaign.cells) out += cell_section(campaign, cell);
   return out + "</section>\n";

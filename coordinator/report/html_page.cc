@@ -28,7 +28,9 @@ font-variant-numeric:tabular-nums}
 .verdict{font-weight:600}.exact{color:var(--exact)}.match{color:var(--match)}.shape{color:var(--shape)}
 .differs{color:var(--differs)}
 .partial{border-left:4px solid var(--differs);padding:.3rem .8rem;background:var(--tint)}
-figure{margin:1rem 0}figure svg{display:block}figcaption{font-size:.85rem;max-width:46rem;margin-top:.3rem}
+.figures{display:flex;flex-wrap:wrap;gap:0 1.5rem;align-items:flex-start}
+figure{margin:1rem 0;max-width:100%}figure svg{display:block}
+figcaption{font-size:.85rem;margin-top:.3rem;width:0;min-width:min(100%,46rem)}
 ol.reasons{font-size:.85rem;padding-left:1.8rem;margin:.4rem 0;max-width:60rem}
 code{font-size:.85em;overflow-wrap:anywhere}
 footer{border-top:1px solid var(--rule);margin-top:3rem;padding-bottom:2rem}

@@ -10,6 +10,7 @@ namespace fatmc {
 
 std::string table_number(double value, const std::string& unit) {
   if (!std::isfinite(value)) return "-";
+  if (unit == "dB" && value != 0.0 && std::abs(value) < 1.0) return significant(value, 2);
   return unit == "%" || unit == "dB" ? fixed(value, 1) : significant(value, 4);
 }
 

@@ -8,7 +8,7 @@
 
 namespace fatmc {
 
-/// Shares and decibels to a tenth, all else to four digits; "-" where there is none.
+/// Shares and decibels to a tenth, decibels below 1 to two digits, all else to four; "-" where there is none.
 std::string table_number(double value, const std::string& unit);
 
 /// "low to high", or "-".

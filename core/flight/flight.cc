@@ -176,7 +176,7 @@ void Flight::fly_plant(PlantType plant, Path path, const Eigen::Ref<const Eigen:
   RandomStream imu_noise(trial, "imu");
   const bool windy = setup_.turbulence_m_s > 0.0;
   Dryden::StateVector air{};
-  if (windy) air = dryden_.start(gust_noise);
+  if (windy && !setup_.gusts_from_calm) air = dryden_.start(gust_noise);
   const AngleLimits angles(aircraft_.validity);
   internal::LimitCount count;
   std::array<double, 3> square_sum{};
@@ -192,7 +192,8 @@ void Flight::fly_plant(PlantType plant, Path path, const Eigen::Ref<const Eigen:
     Gust<double> gust;
     if (windy) {
       const Dryden::Gusts g = dryden_.gusts(air);
-      gust = {{g[0], g[1], g[2]}, {g[3], g[4], g[5]}};
+      const double side = setup_.gusts == FlightSetup::Gusts::all ? 1.0 : 0.0;
+      gust = {{g[0], side * g[1], g[2]}, {side * g[3], g[4], side * g[5]}};
       dryden_.advance(air, gust_noise);
     }
     const internal::Observation at = plant.observe();

@@ -42,6 +42,14 @@ struct FlightSetup {
                               ///< Rates between Runge-Kutta nodes are interpolated linearly
   Imu imu;                    ///< the default measures exactly
   double turbulence_m_s = 0;  ///< sigma of Dryden turbulence; 0 is calm
+  /// Gusts that the aircraft meets: all six, or u, w and q alone. The airframe is symmetric, so that without lateral gusts,
+  /// lateral references and gyro noise it stays in its plane of symmetry exactly: T's "lateral states are fixed" (3.2.2).
+  enum class Gusts { all, longitudinal };
+  Gusts gusts = Gusts::all;
+  /// Gusts at the first tick: a draw from their stationary law, or none, from which the filters fill within L/V = 22 s. A
+  /// stationary draw meets an aircraft that is trimmed for calm air: above sigma = 2 m/s it may leave the model's range of
+  /// angles of attack at once.
+  bool gusts_from_calm = false;
   enum class Plant { nonlinear, linear };
   Plant plant = Plant::nonlinear;  ///< linear: the sampled step map, gusts through its gust input, no limits
   bool closed_loop = true;         ///< false: u = r, normalised commands

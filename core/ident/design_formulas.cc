@@ -31,6 +31,10 @@ double required_line_spacing_hz(double b_3db_hz, int n_e, int order, double rela
   return b_3db_hz / (2 * n_e + 1) * std::pow(relative_bias / limit_bias_constant(order), 1.0 / exponent);
 }
 
+int lines_each_side(int n_out, int m, int order, int n_in, int n_in_add) {
+  return (n_out + m + (order + 1) * (n_in + n_in_add)) / 2;  // ceil((x - 1)/2) = floor(x/2)
+}
+
 double recommended_duration_s(double f0_hz, double damping, int order, DurationRule rule) {
   FATMC_CHECK(f0_hz > 0.0 && damping > 0.0, "a damped mode");
   const double factor = rule == DurationRule::table_3_1 ? 3.0 * std::numbers::pi : 2.0 * order + 3.0;

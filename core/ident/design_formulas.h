@@ -16,6 +16,9 @@ double magnitude_bias_constant(int order);
 /// as -(R+2).
 double required_line_spacing_hz(double b_3db_hz, int n_e, int order, double relative_bias);
 
+/// n_E of (2.127): ceil(((n_out + m) + (R + 1)(n_in + n_in_add) - 1)/2). n_in_add: 1 where the transient is fitted along.
+int lines_each_side(int n_out, int m, int order, int n_in, int n_in_add);
+
 enum class DurationRule {
   table_3_1,  ///< 3 pi / (2 damping f0): reproduces Table 3-1 (f0 in Hz where 2.140 wants rad/s, and 3 for 2R+3 = 7)
   corrected,  ///< (2R+3) / (2 damping f0): (2.140) with B_3dB in Hz, that is twice the printed (2R+3) pi/(2 damping w0)

@@ -3,15 +3,12 @@
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "core/base/check.h"
 
 namespace fatmc {
 namespace {
-
-constexpr double kDrop = 1.0 - 1.0 / std::numbers::sqrt2;  // 3 dB as T has it, 1/sqrt(2)
 
 /// |g2 / g0| of every element over line k's window, in Hz^-2.
 void curvature(const LpmGrid& grid, const FrmEstimate& estimate, int k, std::vector<double>& g0,
@@ -35,14 +32,6 @@ void curvature(const LpmGrid& grid, const FrmEstimate& estimate, int k, std::vec
   }
 }
 
-/// alpha of the limit or of Table 2-3.
-double named_constant(BiasConstant constant, int order) {
-  if (constant == BiasConstant::limit) return limit_bias_constant(order);
-  const std::optional<double> printed = printed_bias_constant(order);
-  FATMC_CHECK(printed.has_value(), "Table 2-3 has orders 2, 4 and 6");
-  return *printed;
-}
-
 /// (B_lpm / 2)^E in Hz^E.
 double window_power(const LpmGrid& grid, int k) {
   const auto offsets = grid.offsets_hz(k);
@@ -53,7 +42,7 @@ double window_power(const LpmGrid& grid, int k) {
 /// sum s_i d_i^E in Hz^E, exactly or as alpha (B_lpm / 2)^E.
 double moment(const LpmGrid& grid, int k, BiasConstant constant) {
   if (constant == BiasConstant::exact_offsets) return grid.bias_moment(k);
-  return named_constant(constant, grid.options().order) * window_power(grid, k);
+  return named_bias_constant(constant, grid.options().order) * window_power(grid, k);
 }
 
 double binomial(int n, int k) {
@@ -79,6 +68,13 @@ std::optional<double> printed_bias_constant(int order) {
   }
 }
 
+double named_bias_constant(BiasConstant constant, int order) {
+  if (constant == BiasConstant::limit) return limit_bias_constant(order);
+  const std::optional<double> printed = printed_bias_constant(order);
+  FATMC_CHECK(constant == BiasConstant::printed && printed.has_value(), "Table 2-3 has orders 2, 4 and 6");
+  return *printed;
+}
+
 MatrixStack<double> interpolation_bias(const LpmGrid& grid, const FrmEstimate& estimate, BiasConstant constant) {
   FATMC_CHECK(grid.line_count() == estimate.line_count(), "the grid behind the estimate");
   const int elements = estimate.n_out * estimate.n_in;
@@ -88,10 +84,10 @@ MatrixStack<double> interpolation_bias(const LpmGrid& grid, const FrmEstimate& e
     double* b = bias.data(k);
     curvature(grid, estimate, k, g0, g2, b);
     const double sum = moment(grid, k, constant);
-    const int half_exponent = grid.bias_exponent() / 2;  // (2 / B_3dB)^2 = |g2 / g0| / kDrop
+    const int half_exponent = grid.bias_exponent() / 2;  // (2 / B_3dB)^2 = |g2 / g0| / kThreeDbDrop
     for (int e = 0; e < elements; ++e) {
       double power = sum;
-      for (int i = 0; i < half_exponent; ++i) power *= b[e] / kDrop;
+      for (int i = 0; i < half_exponent; ++i) power *= b[e] / kThreeDbDrop;
       b[e] = power * std::abs(estimate.G.data(k)[e]);
     }
   }
@@ -100,7 +96,7 @@ MatrixStack<double> interpolation_bias(const LpmGrid& grid, const FrmEstimate& e
 
 double bias_constant(const LpmGrid& grid, int k, BiasConstant constant) {
   if (constant == BiasConstant::exact_offsets) return grid.bias_moment(k) / window_power(grid, k);
-  return named_constant(constant, grid.options().order);
+  return named_bias_constant(constant, grid.options().order);
 }
 
 MatrixStack<double> three_db_range_hz(const LpmGrid& grid, const FrmEstimate& estimate, ThreeDbRule rule) {
@@ -119,7 +115,7 @@ MatrixStack<double> three_db_range_hz(const LpmGrid& grid, const FrmEstimate& es
         ++term;
       }
       const std::complex<double> linear = rule == ThreeDbRule::linear_kept ? psi[1] : 0.0;
-      const double root = std::abs(std::sqrt(linear * linear - 4.0 * kDrop * psi[0] * psi[2]));
+      const double root = std::abs(std::sqrt(linear * linear - 4.0 * kThreeDbDrop * psi[0] * psi[2]));
       range.data(k)[e] = std::abs(psi[2]) > 0.0 ? root / std::abs(psi[2]) : std::numeric_limits<double>::infinity();
     }
   }

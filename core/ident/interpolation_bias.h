@@ -21,6 +21,7 @@
 // estimate exceeds the error at a narrow peak by (1 - 1/sqrt 2)^-2 = 11.7 for R = 2: conservative, as 5.3.3 observes.
 #pragma once
 
+#include <numbers>
 #include <optional>
 
 #include "core/ident/frm_estimate.h"
@@ -40,6 +41,11 @@ enum class BiasConstant {
 double limit_bias_constant(int order);
 /// alpha as Table 2-3 prints it; none for other orders.
 std::optional<double> printed_bias_constant(int order);
+
+/// Either of the two; not for exact_offsets, which has a value a line.
+double named_bias_constant(BiasConstant constant, int order);
+/// 1 - 1/sqrt 2: the drop that T calls 3 dB.
+inline constexpr double kThreeDbDrop = 1.0 - 1.0 / std::numbers::sqrt2;
 
 /// b of every element, n_out x n_in a line, in the unit of G; never negative. Where g0 and g2 both vanish, zero; where
 /// g0 alone does, the 3-dB range is zero and so is |G| in the mean: zero as well.

@@ -1,24 +1,15 @@
 #include "core/ident/lpm_grid.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <string>
+
+#include "core/ident/window_polynomial.h"
 
 namespace fatmc {
 namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
-/// Rows x (degree + 1): powers of x.
-Eigen::MatrixXd vandermonde(std::span<const double> x, int degree) {
-  Eigen::MatrixXd v(static_cast<Eigen::Index>(x.size()), degree + 1);
-  for (Eigen::Index i = 0; i < v.rows(); ++i) {
-    double power = 1.0;
-    for (Eigen::Index g = 0; g < v.cols(); ++g, power *= x[static_cast<std::size_t>(i)]) v(i, g) = power;
-  }
-  return v;
-}
 
 template <typename T>
 std::span<const T> slice(const std::vector<T>& values, int k, int size) {
@@ -86,6 +77,8 @@ std::span<const double> LpmGrid::own_constant_row(int k) const { return slice(ow
 std::span<const double> LpmGrid::linear_row(int k) const { return slice(linear_rows_, k, window()); }
 std::span<const double> LpmGrid::quadratic_row(int k) const { return slice(quadratic_rows_, k, window()); }
 
+int LpmGrid::bias_exponent() const { return fatmc::bias_exponent(options_.order); }
+
 void LpmGrid::place_windows() {
   for (int k = 0; k < line_count(); ++k) {
     const int start = std::clamp(k - options_.n_e, 0, line_count() - window());
@@ -103,24 +96,16 @@ void LpmGrid::place_windows() {
 }
 
 void LpmGrid::fit_bias_polynomials() {
-  const int degree = std::max(2, options_.order);  // a curvature needs degree 2
+  const auto append = [](std::vector<double>& rows, const std::vector<double>& row) {
+    rows.insert(rows.end(), row.begin(), row.end());
+  };
   for (int k = 0; k < line_count(); ++k) {
-    const Eigen::MatrixXd basis = vandermonde(scaled_offsets(k), degree);
-    const Eigen::MatrixXd rows = basis.householderQr().solve(Eigen::MatrixXd::Identity(window(), window()));
-    Eigen::RowVectorXd constant = rows.row(0);
-    if (options_.order < degree) {  // what the LPM's own degree leaves over
-      const Eigen::MatrixXd own = vandermonde(scaled_offsets(k), options_.order);
-      constant = own.householderQr().solve(Eigen::MatrixXd::Identity(window(), window())).row(0);
-    }
-    double moment = 0.0;
-    for (int i = 0; i < window(); ++i) {
-      constant_rows_.push_back(rows(0, i));
-      own_constant_rows_.push_back(constant(i));
-      linear_rows_.push_back(rows(1, i) / scale_hz(k));
-      quadratic_rows_.push_back(rows(2, i) / (scale_hz(k) * scale_hz(k)));
-      moment += constant(i) * std::pow(scaled_offsets(k)[index(i)], bias_exponent());
-    }
-    bias_moment_.push_back(std::abs(moment) * std::pow(scale_hz(k), bias_exponent()));
+    const WindowPolynomial fit = window_polynomial(scaled_offsets(k), scale_hz(k), options_.order);
+    append(constant_rows_, fit.constant);
+    append(own_constant_rows_, fit.own_constant);
+    append(linear_rows_, fit.linear);
+    append(quadratic_rows_, fit.quadratic);
+    bias_moment_.push_back(fit.moment);
   }
 }
 

@@ -80,7 +80,7 @@ class LpmGrid {
   /// |sum_i s_i d_i^E| in Hz^E, d_i the offsets and s the constant row of degree R; see interpolation_bias.h.
   [[nodiscard]] double bias_moment(int k) const { return bias_moment_[static_cast<std::size_t>(k)]; }
   /// E: R + 2 for even R, R + 1 for odd R.
-  [[nodiscard]] int bias_exponent() const { return options_.order + (options_.order % 2 == 0 ? 2 : 1); }
+  [[nodiscard]] int bias_exponent() const;
 
  private:
   LpmGrid() = default;

@@ -20,8 +20,10 @@ SlidingDft::SlidingDft(int window_samples, std::vector<int> bins, int channels)
       step_(bins_.size(), 0),
       twiddle_(index(window_samples)),
       window_(index(window_samples) * index(channels), 0.0),
-      sum_re_(Eigen::MatrixXd::Zero(channels, static_cast<Eigen::Index>(bins_.size()))),
+      sum_re_(Eigen::ArrayXXd::Zero(static_cast<Eigen::Index>(bins_.size()), channels)),
       sum_im_(sum_re_),
+      turn_re_(static_cast<Eigen::Index>(bins_.size())),
+      turn_im_(turn_re_),
       change_(channels),
       dft_(window_samples) {
   FATMC_CHECK(channels >= 1, "at least one channel");
@@ -47,11 +49,15 @@ void SlidingDft::push(std::span<const double> sample) {
   }
   for (std::size_t k = 0; k < bins_.size(); ++k) {
     const std::complex<double> w = twiddle_[index(step_[k])];
-    const auto column = static_cast<Eigen::Index>(k);
-    sum_re_.col(column) += w.real() * change_;
-    sum_im_.col(column) += w.imag() * change_;
+    turn_re_(static_cast<Eigen::Index>(k)) = w.real();
+    turn_im_(static_cast<Eigen::Index>(k)) = w.imag();
     step_[k] += bins_[k];
     if (step_[k] >= window_samples_) step_[k] -= window_samples_;
+  }
+  // Over the bins, of which there are hundreds: long vectors, where channels would give short ones.
+  for (int c = 0; c < channels_; ++c) {
+    sum_re_.col(c) += change_(c) * turn_re_;
+    sum_im_.col(c) += change_(c) * turn_im_;
   }
 }
 
@@ -64,8 +70,8 @@ void SlidingDft::refresh() {
     dft_.transform(samples, spectrum);
     for (std::size_t k = 0; k < bins_.size(); ++k) {
       const std::complex<double> sum = scale * spectrum[index(bins_[k])];
-      sum_re_(c, static_cast<Eigen::Index>(k)) = sum.real();
-      sum_im_(c, static_cast<Eigen::Index>(k)) = sum.imag();
+      sum_re_(static_cast<Eigen::Index>(k), c) = sum.real();
+      sum_im_(static_cast<Eigen::Index>(k), c) = sum.imag();
     }
   }
   for (int& step : step_) step = 0;  // the next sample stands at a multiple of N
@@ -79,12 +85,12 @@ std::complex<double> SlidingDft::turn(std::size_t k) const {
 }
 
 void SlidingDft::spectrum(Eigen::Ref<Eigen::MatrixXcd> out) const {
-  FATMC_CHECK(out.rows() == sum_re_.cols() && out.cols() == channels_, "bins x channels");
+  FATMC_CHECK(out.rows() == sum_re_.rows() && out.cols() == channels_, "bins x channels");
   for (std::size_t k = 0; k < bins_.size(); ++k) {
     const std::complex<double> w = turn(k);
     const auto row = static_cast<Eigen::Index>(k);
     for (int c = 0; c < channels_; ++c)
-      out(row, c) = w * std::complex<double>(sum_re_(c, row), sum_im_(c, row));
+      out(row, c) = w * std::complex<double>(sum_re_(row, c), sum_im_(row, c));
   }
 }
 
@@ -93,9 +99,9 @@ void SlidingDft::spectrum_at_bins(Eigen::Ref<Eigen::MatrixXcd> out) const {
               "rows up to the last bin");
   for (std::size_t k = 0; k < bins_.size(); ++k) {
     const std::complex<double> w = turn(k);
-    const auto column = static_cast<Eigen::Index>(k);
+    const auto row = static_cast<Eigen::Index>(k);
     for (int c = 0; c < channels_; ++c)
-      out(bins_[k], c) = w * std::complex<double>(sum_re_(c, column), sum_im_(c, column));
+      out(bins_[k], c) = w * std::complex<double>(sum_re_(row, c), sum_im_(row, c));
   }
 }
 

@@ -46,7 +46,8 @@ class SlidingDft {
   std::vector<int> step_;                      ///< k n mod N of each bin
   std::vector<std::complex<double>> twiddle_;  ///< exp(-j 2 pi i / N)
   std::vector<double> window_;                 ///< ring, channel by channel
-  Eigen::MatrixXd sum_re_, sum_im_;            ///< channels x bins
+  Eigen::ArrayXXd sum_re_, sum_im_;            ///< bins x channels
+  Eigen::ArrayXd turn_re_, turn_im_;           ///< exp(-j 2 pi k n / N) of the sample at hand
   Eigen::VectorXd change_;
   std::int64_t count_ = 0;
   RealDft dft_;

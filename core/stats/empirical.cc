@@ -7,6 +7,18 @@
 
 namespace fatmc {
 
+double sample_quantile(std::span<double> values, double p) {
+  FATMC_CHECK(!values.empty() && p >= 0.0 && p <= 1.0, "values and a probability");
+  const double h = p * static_cast<double>(values.size() - 1);
+  const auto i = static_cast<std::size_t>(h);
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(i);
+  std::nth_element(values.begin(), at, values.end());
+  const double share = h - static_cast<double>(i);
+  if (share == 0.0 || i + 1 >= values.size()) return *at;
+  const double next = *std::min_element(at + 1, values.end());
+  return *at == next ? *at : *at + share * (next - *at);  // equal infinities have no difference
+}
+
 EmpiricalCdf::EmpiricalCdf(std::vector<double> values) : values_(std::move(values)) {
   FATMC_CHECK(!values_.empty(), "at least one value");
   for (const double v : values_) FATMC_CHECK(std::isfinite(v), "finite values");

@@ -7,6 +7,9 @@
 
 namespace fatmc {
 
+/// EmpiricalCdf::quantile of a sample used once: linear in its size; reorders `values` (at least one, no NaN).
+double sample_quantile(std::span<double> values, double p);
+
 class EmpiricalCdf {
  public:
   /// Takes finite values in any order; at least one.

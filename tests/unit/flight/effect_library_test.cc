@@ -156,8 +156,7 @@ TEST(EffectText, WhatIsWrongIsSaidInOneLineWithWhatIsAdmissible) {
   EXPECT_NE(message("transport_delay:delay_s=0.1,delay_s=0.2").find("twice"), std::string::npos);
   EXPECT_NE(message("control_effectiveness:axis=yawn,factor=1").find("roll, pitch, yaw"), std::string::npos);
   EXPECT_NE(message("control_effectiveness:factor=0.8").find("needs axis"), std::string::npos);
-  EXPECT_NE(message("control_effectiveness:axis=yaw,gain=2").find("factor (0.05 to 20)"),
-            std::string::npos);
+  EXPECT_NE(message("control_effectiveness:axis=yaw,gain=2").find("factor (0.05 to 20)"), std::string::npos);
   EXPECT_NE(message("control_effectiveness:axis=yaw").find("factor"), std::string::npos);
   EXPECT_NE(message("turbulence:factor=2,onset_s=1").find("cannot begin in flight"), std::string::npos);
   EXPECT_NE(message("cm_q:factor=2,duration_s=1").find("onset_s"), std::string::npos);

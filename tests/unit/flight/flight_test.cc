@@ -52,6 +52,37 @@ TEST(Flight, TheSameSeedGivesTheSameBitsAndAnotherDoesNot) {
   EXPECT_GT((fly(windy(), r, 1).output - a.output).cwiseAbs().maxCoeff(), 1e-3);
 }
 
+TEST(Flight, LongitudinalGustsKeepTheAircraftInItsPlaneOfSymmetryExactly) {
+  FlightSetup setup;
+  setup.turbulence_m_s = 3.0;
+  setup.gusts = FlightSetup::Gusts::longitudinal;
+  setup.gusts_from_calm = true;
+  Eigen::MatrixX3d r = waves(2000, 0.05);
+  r.col(0).setZero();
+  r.col(2).setZero();
+  const FlightRecord record = fly(setup, r);
+  EXPECT_EQ(record.ending, Ending::completed);
+  EXPECT_GT(record.output.col(1).cwiseAbs().maxCoeff(), 0.05);
+  EXPECT_EQ(record.output.col(0).cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_EQ(record.output.col(2).cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_EQ(record.auxiliary.col(0).cwiseAbs().maxCoeff(), 0.0);
+}
+
+TEST(Flight, GustsFromCalmBeginAtZeroAndReachTheirStationaryStrength) {
+  FlightSetup setup;
+  setup.turbulence_m_s = 1.0;
+  setup.gusts_from_calm = true;
+  const Eigen::MatrixX3d still = Eigen::MatrixX3d::Zero(20000, 3);
+  const FlightRecord calm = fly(setup, still);
+  EXPECT_NEAR(calm.auxiliary(0, 2), 24.0, 1e-12);
+  setup.gusts_from_calm = false;
+  const FlightRecord stationary = fly(setup, still);
+  EXPECT_GT(std::abs(stationary.auxiliary(0, 2) - 24.0), 1e-3);
+  // Roll rates of the last 200 s scatter alike; their correlation time is below 1 s, so that 200 s give 5 %.
+  const double late = calm.output.col(0).tail(10000).norm() / stationary.output.col(0).tail(10000).norm();
+  EXPECT_NEAR(late, 1.0, 0.2);
+}
+
 TEST(Flight, ARecordThatIsReusedIsOverwritten) {
   const Result<Flight> flight = Flight::prepare(fat(), windy());
   FlightRecord record;

@@ -47,8 +47,17 @@ TEST(FormulaTables, ReproduceTable31ByItsOwnRule) {
   EXPECT_NEAR(find("3-1", "phugoid", "T = 7").value, 554.0, 0.5);
 }
 
+TEST(FormulaTables, CountTheLinesAndDegreesOfFreedomOfTheDesigns) {
+  EXPECT_EQ(find("5-2", "degrees of freedom", "(2.147), m = 1, n_in,add = 1").verdict, "exact");
+  EXPECT_EQ(find("4-1", "n_E", "(2.127), m = 2, n_in,add = 1").verdict, "exact");
+  EXPECT_EQ(find("4-1", "degrees of freedom", "(2.147), m = 2, n_in,add = 1").value, 12.0);
+  EXPECT_EQ(find("5-1", "excited lines", "last step 0.07").verdict, "exact");
+  EXPECT_EQ(find("5-1", "excited lines", "last step 0.7 Hz").value, 43.0);
+}
+
 TEST(FormulaTables, GiveEveryRowAVerdictAndEveryDifferenceAReason) {
   for (const TableRow& row : formula_tables()) {
+    if (std::isnan(row.published)) continue;  // a variant of what is not printed
     EXPECT_TRUE(row.verdict == "exact" || row.verdict == "shape" || row.verdict == "differs");
     EXPECT_TRUE(row.verdict == "exact" || !row.why.empty()) << row.table << ", " << row.row << ", " << row.quantity;
   }

@@ -1,4 +1,4 @@
-#include "core/ident/interpolation_bias.h"
+#include "core/ident/bias_reading.h"
 
 #include <gtest/gtest.h>
 
@@ -80,6 +80,44 @@ TEST(InterpolationBias, IsZeroForAConstantResponse) {
   const LpmGrid grid = make_grid(consecutive_lines(160, 81), 1);
   const FrmEstimate estimate = resonance(grid, 1e12);
   EXPECT_LT(interpolation_bias(grid, estimate)[40](0, 0), 1e-20);
+}
+
+TEST(BiasReading, DefaultIsTheBiasOfAnEstimate) {
+  const LpmGrid grid = make_grid(consecutive_lines(160, 81), 1);
+  const FrmEstimate estimate = resonance(grid, 0.2);
+  const auto expected = interpolation_bias(grid, estimate);
+  const auto read = interpolation_bias(grid, estimate, BiasReading{});
+  for (int k = 0; k < grid.line_count(); ++k) EXPECT_NEAR(read[k](0, 0), expected[k](0, 0), 1e-10 * expected[k](0, 0));
+}
+
+// |G| = 1 - x^2/2 against Re G = 1 - x^2: half the curvature, a quarter of the power four.
+TEST(BiasReading, OfTheMagnitudeIsAQuarterAtANarrowPeak) {
+  const LpmGrid grid = make_grid(consecutive_lines(160, 81), 1);
+  const FrmEstimate estimate = resonance(grid, 1.0);
+  const int peak = 40;
+  const double complex = interpolation_bias(grid, estimate)[peak](0, 0);
+  const double magnitude =
+      interpolation_bias(grid, estimate, {.fit = BiasReading::Fit::magnitude})[peak](0, 0);
+  EXPECT_NEAR(magnitude / complex, 0.25, 0.01);
+}
+
+TEST(BiasReading, ByLineNumberDiffersOnUnevenLinesOnly) {
+  constexpr BiasReading by_number{.constant = BiasConstant::limit, .distance = BiasReading::Distance::line_number};
+  const LpmGrid even = make_grid(consecutive_lines(160, 81), 1);
+  const FrmEstimate estimate = resonance(even, 0.2);
+  const auto in_hz = interpolation_bias(even, estimate, BiasConstant::limit);
+  const auto numbered = interpolation_bias(even, estimate, by_number);
+  for (int k = 0; k < even.line_count(); ++k) EXPECT_NEAR(numbered[k](0, 0), in_hz[k](0, 0), 1e-9 * in_hz[k](0, 0));
+
+  std::vector<int> lines = consecutive_lines(160, 41);
+  for (int i = 1; i <= 40; ++i) lines.push_back(200 + 2 * i);
+  const LpmGrid uneven = make_grid(lines, 1);
+  // A straight line has no curvature over frequency, but one over numbers where the spacing changes.
+  FrmEstimate slope = resonance(uneven, 0.2);
+  for (int k = 0; k < uneven.line_count(); ++k) slope.G[k](0, 0) = 2.0 + (uneven.frequency_hz(k) - 1.0);
+  const int change = 40;
+  EXPECT_LT(interpolation_bias(uneven, slope, BiasConstant::limit)[change](0, 0), 1e-12);
+  EXPECT_GT(interpolation_bias(uneven, slope, by_number)[change](0, 0), 1e-6);
 }
 
 }  // namespace

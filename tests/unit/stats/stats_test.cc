@@ -92,6 +92,15 @@ TEST(EmpiricalCdf, CountsValuesUpToX) {
   EXPECT_NEAR(cdf.quantile(0.9), 2.7, 1e-15);
 }
 
+TEST(SampleQuantile, IsThatOfTheCdf) {
+  const std::vector<double> values = {3.0, -1.0, 2.0, 7.0, 2.0, 5.0};
+  const EmpiricalCdf cdf(values);
+  for (const double p : {0.0, 0.1, 0.25, 0.5, 0.77, 1.0}) {
+    std::vector<double> scratch = values;
+    EXPECT_DOUBLE_EQ(sample_quantile(scratch, p), cdf.quantile(p)) << p;
+  }
+}
+
 TEST(EmpiricalCdf, MeasuresItsDistanceOnBothSidesOfEachStep) {
   const EmpiricalCdf cdf({0.5});
   EXPECT_EQ(cdf.distance([](double x) { return x; }), 0.5);

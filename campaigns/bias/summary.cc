@@ -1,0 +1,183 @@
+#include "campaigns/bias/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "campaigns/base/verdict.h"
+#include "campaigns/bias/error_runs.h"
+
+namespace fatmc::bias {
+namespace {
+
+using Picks = std::span<const std::size_t>;
+
+// Table 4-2's columns: where T reads its errors off, and the damping it has of the pair (Table 3-1, A-1, A-2).
+struct Place {
+  const char* name;
+  std::size_t response;  ///< of kResponses
+  double frequency_hz;
+  const char* why;
+};
+constexpr std::array kPlaces = {
+    Place{"phugoid", 0, 0.082,
+          "the window reaches over the phugoid to the zeros beside it, which are not printed"},
+    Place{"short period", 0, 0.48,
+          "a small error: it hangs on how near the zeros lie, which are not printed"},
+    Place{"zero of r/zeta", 1, 0.050,
+          "the zero stands at the border line itself: its error hangs on its exact place"},
+    Place{"Dutch roll", 1, 0.33, "a small error: it hangs on damping and zeros, which are not printed"}};
+
+constexpr const char* kRangeWhy = "largest errors stand at phugoid and zero: see Table 4-2";
+
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+class CellTables {
+ public:
+  CellTables(const ErrorRuns& runs, std::string suffix, const std::vector<PublishedFigure>& published,
+             std::vector<TableRow>& out)
+      : runs_(runs), suffix_(std::move(suffix)), published_(published), out_(out) {}
+
+  void add_table_4_2() {
+    for (const Place& place : kPlaces) {
+      const std::size_t line = runs_.nearest_line(place.frequency_hz);
+      statistic("4-2", place.name, "magnitude error", "dB", place.why, [&, line](Picks picks) {
+        return magnitude_error_db(mean_ratio(runs_, place.response, line, picks));
+      });
+      statistic("4-2", place.name, "phase error", "deg", place.why, [&, line](Picks picks) {
+        return phase_error_deg(mean_ratio(runs_, place.response, line, picks));
+      });
+    }
+  }
+
+  void add_table_4_3() {
+    for (std::size_t r = 0; r < kResponses.size(); ++r) {
+      statistic("4-3", row_of(r), "mean magnitude error", "dB",
+                "a mean of errors of both signs, ruled by those at phugoid and zero: see Table 4-2",
+                [&, r](Picks picks) { return mean_of(mean_error(runs_, r, picks).magnitude_db); });
+    }
+  }
+
+  void add_table_4_4() {
+    for (std::size_t r = 0; r < kResponses.size(); ++r) {
+      const auto extreme = [&](const char* quantity, const char* unit, std::vector<double> MeanError::*member,
+                               bool upper) {
+        statistic("4-4", row_of(r), quantity, unit, kRangeWhy, [&, r, member, upper](Picks picks) {
+          const MeanError errors = mean_error(runs_, r, picks);
+          const auto& values = errors.*member;
+          return upper ? *std::max_element(values.begin(), values.end())
+                       : *std::min_element(values.begin(), values.end());
+        });
+      };
+      extreme("upper magnitude error", "dB", &MeanError::magnitude_db, true);
+      extreme("lower magnitude error", "dB", &MeanError::magnitude_db, false);
+      extreme("upper phase error", "deg", &MeanError::phase_deg, true);
+      extreme("lower phase error", "deg", &MeanError::phase_deg, false);
+    }
+  }
+
+  // (4.1): eps = alpha (B/(2 zeta f0))^(R+2), B = df n_E, R = 2, times the border factor of 2.4.3.2.
+  void add_table_4_5() {
+    constexpr double kWidth = 0.01 * 10, kBorder = 8.0;
+    struct Mode {
+      const char* name;
+      double f0, damping;
+      std::size_t place;
+    };
+    for (const Mode& mode : {Mode{"phugoid", 0.082, 0.077, 0}, Mode{"zero of r/zeta", 0.050, 0.199, 2}}) {
+      const double narrow = std::pow(kWidth / (2.0 * mode.damping * mode.f0), 4);
+      const auto formula = [&](const std::string& variant, double value, const char* why) {
+        TableRow row =
+            begin("4-5", mode.name, "estimated amplification, " + variant, "estimated amplification", "dB");
+        row.value = 20.0 * std::log10(value);
+        judge_exact(row, 1.0, why);
+        out_.push_back(std::move(row));
+      };
+      formula("(4.1) with 0.0857 and border factor 8", 0.0857 * narrow * kBorder,
+              "gives the other mode's figure to the digit: this one would need a damping of 0.17");
+      formula("(4.1) as printed, 0.857", 0.857 * narrow, "0.857 is ten times the constant of Table 2-3");
+      const Place& place = kPlaces[mode.place];
+      const std::size_t line = runs_.nearest_line(place.frequency_hz);
+      statistic("4-5", mode.name, "observed amplification", "dB",
+                "a ratio to the mean error of Table 4-3, which is a small difference of large numbers",
+                [&, line](Picks picks) {
+                  const double there = magnitude_error_db(mean_ratio(runs_, place.response, line, picks));
+                  const double mean = mean_of(mean_error(runs_, place.response, picks).magnitude_db);
+                  return 20.0 * std::log10(std::abs(there / mean));
+                });
+    }
+  }
+
+  // 13.8 and 5.4 dB are read as 20 log10(1 + b/|G|): as 20 log10(b/|G|) the Dutch roll's estimate would exceed |G|.
+  void add_bias_estimates() {
+    for (std::size_t r = 0; r < kResponses.size(); ++r) {
+      for (std::size_t i = 0; i < kReadings.size(); ++i) {
+        std::vector<double> decibel;
+        for (const double b : runs_.relative_bias[r][i]) decibel.push_back(20.0 * std::log10(1.0 + b));
+        TableRow row = begin("Section 4.2.3", std::string(kResponses[r].bias_place),
+                             "bias estimate, " + std::string(kReadings[i].name), "bias estimate", "dB");
+        fill_mean(row, decibel, kPublishedRepetitions);
+        judge_by_order(row, "curvature of the response hangs on derivatives that are not printed");
+        out_.push_back(std::move(row));
+      }
+    }
+  }
+
+ private:
+  static std::string row_of(std::size_t response) {
+    return std::string(kResponses[response].key) + " response";
+  }
+
+  TableRow begin(const std::string& table, const std::string& row, const std::string& quantity,
+                 const std::string& printed, const std::string& unit) const {
+    TableRow out = table_row(table, row, printed, unit);
+    out.published = published_value(published_, out);
+    out.quantity = quantity;
+    out.row += suffix_;
+    if (runs_.failed > 0) out.why = std::to_string(runs_.failed) + " trials without an estimate";
+    return out;
+  }
+
+  void statistic(const std::string& table, const std::string& row, const std::string& quantity,
+                 const std::string& unit, std::string_view why, const RunStatistic& of) {
+    TableRow out = begin(table, row, quantity, quantity, unit);
+    fill_statistic(out, runs_.runs(), kPublishedRepetitions, of);
+    judge_by_order(out, why);
+    out_.push_back(std::move(out));
+  }
+
+  const ErrorRuns& runs_;
+  std::string suffix_;
+  const std::vector<PublishedFigure>& published_;
+  std::vector<TableRow>& out_;
+};
+
+}  // namespace
+
+Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& rows) {
+  auto published = decode_published(spec);
+  if (!published) return fail(published.error());
+  std::vector<TableRow> out;
+  for (std::uint32_t index = 0; index < spec.cells.size(); ++index) {
+    const ErrorRuns runs = error_runs(index, rows);
+    if (runs.runs() == 0) continue;
+    const std::vector<PublishedFigure> figures =
+        compared_with_print(spec, index) ? *published : std::vector<PublishedFigure>{};
+    CellTables cell(runs, spec.cells.size() == 1 ? "" : ", " + spec.cells[index].name, figures, out);
+    cell.add_table_4_2();
+    cell.add_table_4_3();
+    cell.add_table_4_4();
+    cell.add_table_4_5();
+    cell.add_bias_estimates();
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const TableRow& a, const TableRow& b) { return a.table < b.table; });
+  return out;
+}
+
+const SummaryStudy kSummaryStudy{"bias", &tables, &figures};
+
+}  // namespace fatmc::bias

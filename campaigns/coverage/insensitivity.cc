@@ -1,0 +1,76 @@
+#include "campaigns/coverage/insensitivity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "campaigns/base/prepared_trials.h"
+#include "campaigns/base/verdict.h"
+#include "campaigns/flown/flown_flights.h"
+#include "core/flight/turbulence_insensitivity.h"
+
+namespace fatmc::coverage {
+namespace {
+
+Result<std::unique_ptr<const FlownFlights>> first_cell(const CampaignSpec& spec) {
+  auto own = spec_of_cell(spec, 0);
+  if (!own) return fail(own.error());
+  auto cell = decode_flown_cell(*own, 0);
+  if (!cell) return fail(cell.error());
+  return FlownFlights::prepare(*own, 0, std::move(*cell));
+}
+
+Insensitivity at(const FlownFlights& flights, std::vector<double> frequency_hz) {
+  Insensitivity out;
+  for (const double f : frequency_hz) {
+    const std::array<double, 3> ratio = turbulence_insensitivity(flights.flight().continuous(), f);
+    for (std::size_t axis = 0; axis < 3; ++axis) out.decibel[axis].push_back(20.0 * std::log10(ratio[axis]));
+  }
+  out.frequency_hz = std::move(frequency_hz);
+  return out;
+}
+
+}  // namespace
+
+Result<Insensitivity> insensitivity_at_lines(const CampaignSpec& spec) {
+  auto flights = first_cell(spec);
+  if (!flights) return fail(flights.error());
+  std::vector<double> frequency_hz;
+  for (int k = 0; k < (*flights)->grid().line_count(); ++k)
+    frequency_hz.push_back((*flights)->grid().frequency_hz(k));
+  return at(**flights, std::move(frequency_hz));
+}
+
+Result<Insensitivity> insensitivity_curve(const CampaignSpec& spec) {
+  auto flights = first_cell(spec);
+  if (!flights) return fail(flights.error());
+  constexpr int kPoints = 200;
+  std::vector<double> frequency_hz;
+  for (int i = 0; i <= kPoints; ++i)
+    frequency_hz.push_back(0.05 * std::pow(100.0, static_cast<double>(i) / kPoints));
+  return at(**flights, std::move(frequency_hz));
+}
+
+Status add_insensitivity_rows(const CampaignSpec& spec, const std::vector<PublishedFigure>& published,
+                              std::vector<TableRow>& out) {
+  auto s = insensitivity_at_lines(spec);
+  if (!s) return fail(s.error());
+  const auto add = [&](const char* row, const char* quantity, double value) {
+    TableRow r = table_row("Fig. 5-2", row, quantity, "dB");
+    r.published = published_value(published, r);
+    r.value = value;
+    judge_exact(r, 1.0, "hangs on roll damping and derivatives by rotation, which are not printed");
+    out.push_back(std::move(r));
+  };
+  const auto largest = [&](std::size_t axis) {
+    return *std::max_element(s->decibel[axis].begin(), s->decibel[axis].end());
+  };
+  add("roll", "at the lowest line", s->decibel[0].front());
+  add("roll", "largest", largest(0));
+  add("pitch", "smallest", *std::min_element(s->decibel[1].begin(), s->decibel[1].end()));
+  add("yaw", "smallest", *std::min_element(s->decibel[2].begin(), s->decibel[2].end()));
+  add("pitch and yaw", "largest", std::max(largest(1), largest(2)));
+  return {};
+}
+
+}  // namespace fatmc::coverage

@@ -1,0 +1,168 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "campaigns/dynamics_change/alarms.h"
+#include "campaigns/dynamics_change/summary.h"
+#include "core/base/text.h"
+#include "core/stats/empirical.h"
+
+namespace fatmc::dynamics_change {
+namespace {
+
+/// Values of all runs by time since the onset, in whole epochs.
+using History = std::map<long, std::vector<double>>;
+
+History history(const MonitoredCell& cell,
+                const std::function<std::vector<double>(const MonitoredRun&)>& values) {
+  History out;
+  for (const MonitoredRun& run : cell.runs) {
+    const std::vector<double> series = values(run);
+    for (std::size_t i = 0; i < series.size(); ++i) {
+      if (!std::isnan(series[i]))
+        out[std::lround((run.time(i) - run.onset_s) / run.epoch_s)].push_back(series[i]);
+    }
+  }
+  return out;
+}
+
+plot::Panel history_panel(const std::string& title, const std::string& label, double epoch_s,
+                          const History& values, double threshold) {
+  plot::Panel panel;
+  panel.title = title;
+  panel.x.label = "time since the change, s";
+  panel.y.label = label;
+  plot::Band band;
+  plot::Line median, first;
+  band.name = "quartiles over runs";
+  median.name = "median";
+  first.name = "a flight";
+  first.hue = plot::Hue::grey;
+  first.dash = plot::Dash::dashed;
+  for (const auto& [epoch, at] : values) {
+    const EmpiricalCdf cdf(at);
+    const double x = epoch_s * static_cast<double>(epoch);
+    band.x.push_back(x);
+    band.low.push_back(cdf.quantile(0.25));
+    band.high.push_back(cdf.quantile(0.75));
+    median.x.push_back(x);
+    median.y.push_back(cdf.quantile(0.5));
+    first.x.push_back(x);
+    first.y.push_back(at.front());
+  }
+  panel.marks = {band, first, median, plot::Rule{"threshold", threshold},
+                 plot::Rule{"", 0.0, true, plot::Hue::grey, plot::Dash::dotted}};
+  return panel;
+}
+
+StudyFigure history_figure(const CampaignSpec& spec, const std::map<std::uint32_t, MonitoredCell>& cells,
+                           Detector detector, double threshold) {
+  StudyFigure out;
+  const bool csl = detector != Detector::noise_rise;
+  out.id = detector == Detector::csl ? "Fig. 5-16"
+           : csl                     ? "Fig. 5-16 with the smallest p"
+                                     : "Noise rise after a change";
+  out.figure.title = csl ? "Confident stability level around a change of the dynamics"
+                         : "Rise of the estimated noise within a quarter window";
+  out.figure.columns = 2;
+  std::size_t runs = 0;
+  for (const auto& [index, cell] : cells) {
+    if (std::isinf(cell.runs.front().onset_s)) continue;
+    runs += cell.runs.size();
+    const History values = history(cell, [&](const MonitoredRun& run) {
+      return detector == Detector::csl ? run.csl : csl ? run.csl_min : alarm_statistic(run, detector);
+    });
+    if (values.empty()) continue;
+    plot::Panel panel = history_panel(spec.cells[index].name, csl ? "CSL" : "D", cell.runs.front().epoch_s,
+                                      values, threshold);
+    if (csl) panel.y.range = plot::Range{0.0, 1.0};
+    out.figure.panels.push_back(std::move(panel));
+  }
+  out.caption =
+      std::to_string(runs) + " flights. " +
+      (csl ? (detector == Detector::csl ? "Bonferroni over the elements"
+                                        : "Smallest p of a line's elements") +
+                 std::string("; before a full window it begins with zeros.")
+           : "D: largest rise over a quarter window of the mean log noise of p, q, r; spectra from the lines "
+             "between the excited ones.");
+  return out;
+}
+
+/// Detection against false alarms, the threshold running through the worst values of the unchanged hours.
+StudyFigure roc_figure(const CampaignSpec& spec, const std::map<std::uint32_t, MonitoredCell>& cells) {
+  StudyFigure out;
+  out.id = "Detection against false alarms";
+  out.figure.title = "Changes found within a quarter window against hours with a false alarm";
+  out.figure.columns = 2;
+  std::size_t hours = 0;
+  for (const Detector detector : kDetectors) {
+    std::vector<double> worst;
+    for (const auto& [index, cell] : cells) {
+      for (const MonitoredRun& run : cell.runs) {
+        const double value = worst_of_hour(run, detector);
+        if (!std::isnan(value)) worst.push_back(value);
+      }
+    }
+    hours = worst.size();
+    if (worst.empty()) continue;
+    std::sort(worst.begin(), worst.end());
+    plot::Panel panel;
+    panel.title = std::string(name(detector));
+    panel.x.label = "hours with a false alarm, %";
+    panel.y.label = "found in W/4, %";
+    panel.x.range = panel.y.range = plot::Range{0.0, 100.0};
+    constexpr plot::Hue hues[] = {plot::Hue::blue,   plot::Hue::orange, plot::Hue::green,
+                                  plot::Hue::purple, plot::Hue::red,    plot::Hue::grey};
+    std::size_t hue = 0;
+    for (const auto& [index, cell] : cells) {
+      if (std::isinf(cell.runs.front().onset_s)) continue;
+      std::vector<QuarterWindow> found;
+      for (const MonitoredRun& run : cell.runs)
+        found.push_back(quarter_window(run, alarm_statistic(run, detector)));
+      plot::Line line;
+      line.name = spec.cells[index].name;
+      line.hue = hues[hue++ % std::size(hues)];
+      for (std::size_t i = 0; i <= worst.size(); ++i) {
+        // Just at the i-th worst value: the larger ones alarm.
+        const double threshold = i < worst.size() ? worst[i] : -std::numeric_limits<double>::infinity();
+        const auto above = i < worst.size()
+                               ? worst.end() - std::upper_bound(worst.begin(), worst.end(), threshold)
+                               : static_cast<std::ptrdiff_t>(worst.size());
+        const auto hits = std::count_if(found.begin(), found.end(), [&](const QuarterWindow& w) {
+          return w.largest > threshold && !(w.before > threshold);
+        });
+        line.x.push_back(100.0 * static_cast<double>(above) / static_cast<double>(worst.size()));
+        line.y.push_back(100.0 * static_cast<double>(hits) / static_cast<double>(found.size()));
+      }
+      panel.marks.emplace_back(std::move(line));
+    }
+    out.figure.panels.push_back(std::move(panel));
+  }
+  out.caption =
+      "From " + std::to_string(hours) +
+      " hours of flight without a change. A flight whose alarm was on when the change came counts as missed.";
+  return out;
+}
+
+}  // namespace
+
+Result<std::vector<StudyFigure>> figures(const CampaignSpec& spec, const RowSource& rows) {
+  const auto thresholds = decode_thresholds(spec);
+  if (!thresholds) return fail(thresholds.error());
+  std::map<std::uint32_t, MonitoredCell> cells;
+  for (std::uint32_t index = 0; index < spec.cells.size(); ++index) {
+    MonitoredCell cell = read_cell(index, rows);
+    if (!cell.runs.empty()) cells.emplace(index, std::move(cell));
+  }
+  std::vector<StudyFigure> out;
+  if (cells.empty()) return out;
+  out.push_back(history_figure(spec, cells, Detector::csl, thresholds->csl));
+  out.push_back(history_figure(spec, cells, Detector::csl_min, thresholds->csl));
+  out.push_back(history_figure(spec, cells, Detector::noise_rise, thresholds->noise_rise));
+  StudyFigure roc = roc_figure(spec, cells);
+  if (!roc.figure.panels.empty()) out.push_back(std::move(roc));
+  return out;
+}
+
+}  // namespace fatmc::dynamics_change

@@ -1,0 +1,78 @@
+// One or several records set beside the model, in white coordinates: where the model is right, the discrepancy is a vector
+// of independent normal variables of variance one. Records are stacked; an effect acts on all of them at once.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/discrepancy/comparison_basis.h"
+
+namespace fatmc {
+
+/// A record's features and what they are compared with. Pointers must outlive the comparison.
+struct ComparedRecord {
+  const ModelSimulator* model = nullptr;
+  const ComparisonBasis* basis = nullptr;
+  Eigen::VectorXd features;
+};
+
+/// What each statistic exceeds by chance with the probability that stands behind it, in a record on which the model is
+/// right. Together below 1 %.
+struct Thresholds {
+  static constexpr double kScanShare = 0.004, kEnergyShare = 0.002, kLocalShare = 0.002;
+  double scan = 0.0;         ///< of the largest generalised likelihood ratio over all signatures
+  double energy = 0.0;       ///< of z^T z
+  double local = 0.0;        ///< of the largest group score
+  double energy_mean = 0.0;  ///< mean of z^T z: the noise floor
+};
+
+/// What chance leaves where other effects shape the noise, in the coordinates of the model's own law.
+struct ResidualLaw {
+  double energy_mean = 0.0;
+  std::vector<Eigen::VectorXd> group_mean, group_deviation;  ///< a record each
+};
+
+/// x with P(X > x) = share, from draws of X: the empirical quantile at 5 %, beyond it an exponential tail with the mean
+/// excess over that quantile. Tails of chi-square are lighter, so that the share is kept from above.
+double tail_quantile(std::vector<double> draws, double share);
+
+class Comparison {
+ public:
+  explicit Comparison(std::vector<ComparedRecord> records, int threads);
+
+  [[nodiscard]] const std::vector<ComparedRecord>& records() const { return records_; }
+  [[nodiscard]] const Thresholds& thresholds() const { return thresholds_; }
+  [[nodiscard]] Eigen::Index size() const { return discrepancy_.size(); }
+  [[nodiscard]] const Dictionary& dictionary() const { return records_.front().basis->dictionary; }
+  /// Record minus model, white.
+  [[nodiscard]] const Eigen::VectorXd& discrepancy() const { return discrepancy_; }
+  /// Signatures, white, a column each; scaled to nothing.
+  [[nodiscard]] const Eigen::MatrixXd& atoms() const { return atoms_; }
+
+  /// Mean change of the features by each set of effects, white, a column each, from `flights` flights with the baseline's
+  /// noise; a set that cannot be flown on every record is a column of NaN.
+  [[nodiscard]] Eigen::MatrixXd changes(std::span<const std::vector<Effect>> sets, int flights) const;
+  /// Largest standardised sum of squares over all groups of all records.
+  [[nodiscard]] double local_score(const Eigen::Ref<const Eigen::VectorXd>& z) const;
+  [[nodiscard]] double local_score(const Eigen::Ref<const Eigen::VectorXd>& z, const ResidualLaw& law) const;
+  /// From `flights` flights of the model with these effects; none where one of them fails.
+  [[nodiscard]] std::optional<ResidualLaw> residual_law(const std::vector<Effect>& effects,
+                                                        int flights) const;
+  /// Rows that are held back where no record is: every fifth line.
+  [[nodiscard]] std::vector<int> held_out_rows() const;
+  [[nodiscard]] std::vector<int> training_rows() const;
+  /// First row of a record in the stack.
+  [[nodiscard]] Eigen::Index first_row(std::size_t record) const { return first_[record]; }
+
+ private:
+  std::vector<ComparedRecord> records_;
+  int threads_;
+  std::vector<Eigen::Index> first_;
+  Eigen::VectorXd discrepancy_;
+  Eigen::MatrixXd atoms_;
+  Thresholds thresholds_;
+};
+
+}  // namespace fatmc

@@ -1,0 +1,72 @@
+// What depends on model and experiment alone, computed once and shared by every diagnosis of such a record: the law of its
+// features where the model is right, the signatures of the effects, and how large each statistic becomes by chance.
+//
+// Chance is measured on flights that the law has not seen: the flights are split into kFolds parts, and each part is judged
+// by the law of the others. So thresholds need no assumption on the law's form.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "core/discrepancy/dictionary.h"
+#include "core/discrepancy/null_law.h"
+#include "core/discrepancy/response_map.h"
+
+namespace fatmc {
+
+/// A change of the features by one standard deviation of something that neither model nor record states.
+struct Nuisance {
+  Effect effect;       ///< flown at these values ...
+  double scale = 1.0;  ///< ... its change times this is one standard deviation
+};
+
+struct BasisOptions {
+  int flights = 1000;
+  std::vector<std::string> excluded;  ///< effects that are no candidates, by id or name
+  std::vector<Nuisance> nuisances;
+  int threads = 1;
+};
+
+/// Neighbouring features that one local statistic sums up: an unknown effect may be strong in a few of them only.
+struct FeatureGroup {
+  FeatureKind kind = FeatureKind::line;
+  int channel = 0;
+  double low_hz = 0.0, high_hz = 0.0;
+  std::vector<int> rows;  ///< of the feature vector
+};
+std::vector<FeatureGroup> feature_groups(const FeatureLayout& layout);
+/// Sum of squares of a white vector over every group.
+Eigen::VectorXd group_sums(const std::vector<FeatureGroup>& groups,
+                           const Eigen::Ref<const Eigen::VectorXd>& z);
+/// Deviation of every group's sum over flights (rows), not below that of a square of unit variance, 2^(1/2): features with
+/// a floor hardly scatter.
+Eigen::VectorXd floored_deviation(const Eigen::Ref<const Eigen::MatrixXd>& sums,
+                                  const Eigen::Ref<const Eigen::VectorXd>& mean);
+
+/// Statistics of white vectors judged by laws that they did not shape.
+struct NullStatistics {
+  Eigen::MatrixXd score;   ///< flights x atoms: a^T z / |a|; zero for signatures that vanish
+  Eigen::VectorXd energy;  ///< z^T z
+  Eigen::VectorXd group_mean, group_deviation;  ///< of every group's sum of squares
+  Eigen::VectorXd group_score;  ///< a flight: largest (sum - mean) / deviation over the groups
+};
+
+struct ComparisonBasis {
+  static constexpr int kFolds = 4, kBaseline = 8;
+
+  FeatureLayout layout;
+  std::vector<FeatureGroup> groups;
+  NullLaw law;
+  Eigen::MatrixXd baseline;  ///< features of the model's flights 0 ... kBaseline-1, a column each
+  Dictionary dictionary;
+  Eigen::MatrixXd atoms;  ///< signatures, whitened by the law
+  NullStatistics null;
+  ResponseMap map;
+
+  /// `progress` counts flights over all stages.
+  static Result<ComparisonBasis> make(const ModelSimulator& model, const LpmGrid& grid,
+                                      const BasisOptions& options, const FlightProgress& progress = {});
+};
+
+}  // namespace fatmc

@@ -1,0 +1,103 @@
+#include "core/discrepancy/dictionary.h"
+
+#include <algorithm>
+
+#include "core/discrepancy/effect_knowledge.h"
+#include "core/discrepancy/effect_size.h"
+
+namespace fatmc {
+namespace {
+
+constexpr double kSmall = 0.25;  // of the least moderate size: nearly the derivative
+constexpr int kShapePlaces =
+    5;  // of the first shape; a flexible mode is found from its neighbours on the grid
+
+/// Values of the shapes: the first on a grid, the others in the middle of their range.
+std::vector<std::vector<double>> shape_grid(const EffectKind& kind, const std::vector<double>& nominal) {
+  std::vector<std::vector<double>> out = {nominal};
+  bool first = true;
+  for (std::size_t p = 0; p < kind.parameters.size(); ++p) {
+    const EffectParameter& parameter = kind.parameters[p];
+    if (parameter.strength) continue;
+    if (!first) {
+      for (auto& values : out) values[p] = parameter.moderate(0.5, false);
+      continue;
+    }
+    first = false;
+    std::vector<std::vector<double>> next;
+    for (int place = 0; place < kShapePlaces; ++place) {
+      next.push_back(out.front());
+      next.back()[p] = parameter.moderate(place / (kShapePlaces - 1.0), false);
+    }
+    out = std::move(next);
+  }
+  return out;
+}
+
+/// Sizes of one strength. What a limit does depends on how far it is met: three of them, and a mild one beyond.
+std::vector<double> strengths(const EffectParameter& parameter) {
+  std::vector<double> wanted;
+  if (is_limit(parameter)) {
+    for (const double place : {0.0, 0.5, 1.0, 1.5}) wanted.push_back(parameter.moderate(place, false));
+  } else {
+    const double least = place_of_least(parameter);
+    for (const bool mirrored : {false, true}) {
+      if (mirrored && parameter.mirror == EffectParameter::Mirror::none) continue;
+      wanted.push_back(parameter.toward(parameter.moderate(least, mirrored), kSmall));
+      wanted.push_back(parameter.moderate(1.0 - least, mirrored));
+    }
+  }
+  std::erase_if(wanted, [&](double value) { return value < parameter.low || value > parameter.high; });
+  return wanted;
+}
+
+}  // namespace
+
+std::vector<Effect> candidate_variants(const std::vector<std::string>& excluded) {
+  std::vector<Effect> out = effect_variants();
+  std::erase_if(out, [&](const Effect& e) {
+    if (find_knowledge(e.id) == nullptr) return true;
+    return std::find(excluded.begin(), excluded.end(), e.id) != excluded.end() ||
+           std::find(excluded.begin(), excluded.end(), e.name()) != excluded.end();
+  });
+  return out;
+}
+
+std::vector<Atom> signature_effects(const std::vector<Effect>& variants) {
+  std::vector<Atom> out;
+  for (std::size_t v = 0; v < variants.size(); ++v) {
+    const EffectKind& kind = variants[v].kind();
+    for (const std::vector<double>& shaped : shape_grid(kind, variants[v].values)) {
+      for (std::size_t p = 0; p < kind.parameters.size(); ++p) {
+        if (!kind.parameters[p].strength) continue;
+        for (const double value : strengths(kind.parameters[p])) {
+          Atom atom{variants[v], static_cast<int>(v)};
+          atom.effect.values = shaped;
+          atom.effect.values[p] = value;
+          out.push_back(std::move(atom));
+        }
+      }
+    }
+  }
+  return out;
+}
+
+Dictionary make_dictionary(const ModelSimulator& model, const std::vector<std::string>& excluded,
+                           const Eigen::Ref<const Eigen::MatrixXd>& baseline, int threads,
+                           const FlightProgress& progress) {
+  Dictionary out;
+  out.variants = candidate_variants(excluded);
+  out.atoms = signature_effects(out.variants);
+  std::vector<std::vector<Effect>> sets;
+  for (const Atom& atom : out.atoms) sets.push_back({atom.effect});
+  const std::vector<EffectFlights> flown = model.fly(sets, 0, Dictionary::kFlights, threads, progress);
+  out.differences.setZero(baseline.rows(), static_cast<Eigen::Index>(out.atoms.size()));
+  for (std::size_t a = 0; a < out.atoms.size(); ++a) {
+    if (!flown[a].usable()) continue;
+    out.differences.col(static_cast<Eigen::Index>(a)) =
+        (flown[a].features - baseline.leftCols(Dictionary::kFlights)).rowwise().mean();
+  }
+  return out;
+}
+
+}  // namespace fatmc
