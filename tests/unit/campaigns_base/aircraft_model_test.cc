@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "campaigns/base/effect_tables.h"
 #include "coordinator/input/toml_file.h"
 
 namespace fatmc {
@@ -35,6 +36,44 @@ class ModelFile : public testing::Test {
     return model ? "" : model.error().text();
   }
 };
+
+TEST_F(ModelFile, EffectTablesPatchTheFlightAndLeaveTheParentAsItIs) {
+  const AircraftModel parent = *decode_aircraft_model(*read_toml("campaigns/models/fat.toml"));
+  const std::vector<Effect> wanted = {*parse_effect("control_effectiveness:axis=pitch,factor=0.8"),
+                                      *parse_effect("transport_delay:delay_s=0.03,onset_s=100")};
+  {
+    std::ifstream in("campaigns/models/fat.toml");
+    std::ofstream out(path_);
+    out << in.rdbuf();
+    for (const Effect& effect : wanted) out << "\n" << effect_toml(effect);
+  }
+  const Result<AircraftModel> patched = decode_aircraft_model(*read_toml(path_));
+  ASSERT_TRUE(patched) << patched.error().text();
+  EXPECT_TRUE(patched->effects == wanted);
+  EXPECT_TRUE(patched->aircraft == parent.aircraft);
+  const Result<ModifiedFlight> modified = modified_flight(*patched, FlightSetup{});
+  ASSERT_TRUE(modified) << modified.error().text();
+  EXPECT_EQ(modified->aircraft.pitch.eta, 0.8 * parent.aircraft.pitch.eta);
+  EXPECT_EQ(modified->setup.path.command_delay_s, 0.0);
+  ASSERT_EQ(modified->setup.stages.size(), 1u);
+  EXPECT_EQ(modified->setup.stages[0].path.command_delay_s, 0.03);
+  const Result<ModifiedFlight> plain = modified_flight(parent, FlightSetup{});
+  ASSERT_TRUE(plain);
+  EXPECT_TRUE(plain->aircraft == parent.aircraft);
+  EXPECT_TRUE(plain->setup == FlightSetup{});
+}
+
+TEST_F(ModelFile, AWrongEffectIsSaidWithFileLineAndWhatIsAdmissible) {
+  const std::string file = path_;
+  const auto message = [&](const std::string& table) {
+    return error_with("kind = ", "kind = \"aircraft\"\n# a comment\n") + error_with("bits = 13", "bits = 13\n" + table);
+  };
+  const std::string range = message("[[effect]]\nid = \"transport_delay\"\ndelay_s = 9.0");
+  EXPECT_NE(range.find(file + ":"), std::string::npos) << range;
+  EXPECT_NE(range.find("0 to 2"), std::string::npos) << range;
+  EXPECT_NE(message("[[effect]]\naxis = \"roll\"").find("effect.id"), std::string::npos);
+  EXPECT_NE(message("[[effect]]\nid = \"telepathy\"").find("transport_delay"), std::string::npos);
+}
 
 TEST_F(ModelFile, TheFatDecodesWithTwoGradesOfGyros) {
   const Result<AircraftModel> model = decode_aircraft_model(*read_toml("campaigns/models/fat.toml"));

@@ -1,9 +1,12 @@
 // The library of effects as a whole: what every effect must do.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <set>
+#include <sstream>
 
 #include "core/flight/effects/effect.h"
+#include "core/flight/effects/listing.h"
 #include "tests/unit/flight/fat.h"
 
 namespace fatmc {
@@ -116,6 +119,14 @@ TEST(EffectLibrary, AWeakEffectIsNearTheUnmodifiedFlight) {
     ASSERT_TRUE(modified.has_value()) << effect.text();
     EXPECT_LT((flown(*modified).output - plain.output).cwiseAbs().maxCoeff(), 1e-5) << effect.text();
   }
+}
+
+TEST(EffectText, TheTableOfTheDocumentationIsThatOfTheLibrary) {
+  std::ifstream in("docs/effects.md");
+  std::stringstream page;
+  page << in.rdbuf();
+  EXPECT_NE(page.str().find(effect_table_markdown()), std::string::npos)
+      << "put the output of fatmc simulate --effect table there";
 }
 
 TEST(EffectText, ReadsBackToAnEqualEffect) {
