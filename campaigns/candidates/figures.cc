@@ -100,7 +100,7 @@ StudyFigure figure_3(const ModelTable& table, const Selected& selected, const st
   plot::Figure figure;
   figure.title = "Index of agreement against rms error" + suffix;
   figure.panels = {std::move(panel)};
-  return {"Fig. 3",
+  return {"Fig. 3" + suffix,
           "Every model of the first selected order on the eight multisteps, all outputs; J_rms in ft/s, "
           "deg/s, deg.",
           std::move(figure)};
@@ -131,7 +131,8 @@ StudyFigure figure_4(const ModelTable& table, const std::string& suffix) {
   plot::Figure figure;
   figure.title = "Index of agreement by model order" + suffix;
   figure.panels = {std::move(panel)};
-  return {"Fig. 4", "All models of each order that were identified and validated.", std::move(figure)};
+  return {"Fig. 4" + suffix, "All models of each order that were identified and validated.",
+          std::move(figure)};
 }
 
 StudyFigure windows(const ModelTable& table, const Selection& selection, const Selected& selected,
@@ -155,7 +156,8 @@ StudyFigure windows(const ModelTable& table, const Selection& selection, const S
       panel.marks.push_back(plot::Rule{"limit", selected.limit, false, plot::Hue::grey, plot::Dash::dashed});
     figure.panels.push_back(std::move(panel));
   }
-  return {"Figs. 6, 7", "Every model of the order; of more than 3000 every k-th.", std::move(figure)};
+  return {"Figs. 6, 7, " + selection.limit_text() + suffix,
+          "Every model of the order; of more than 3000 every k-th.", std::move(figure)};
 }
 
 /// Tracked modes in the plane of their eigenvalue.
@@ -196,7 +198,7 @@ StudyFigure eigenvalues(const ModelTable& table, const Selected& selected, const
     panel.marks.push_back(plot::Rule{"", 0.0, true, plot::Hue::grey, plot::Dash::dotted});
     figure.panels.push_back(std::move(panel));
   }
-  return {"Figs. 11, 12", "Published modes as the candidates of the last selected order have them.",
+  return {"Figs. 11, 12" + suffix, "Published modes as the candidates of the last selected order have them.",
           std::move(figure)};
 }
 
@@ -222,7 +224,8 @@ Result<std::vector<StudyFigure>> figures(const CampaignSpec& spec, const RowSour
     five.columns = 2;
     five.panels = {responses("all", table, of_first.all, truth),
                    responses("best by d1", table, of_first.best, truth)};
-    out.push_back({"Fig. 5", "Magnitude of p/delta_y in deg/s per per cent of control.", std::move(five)});
+    out.push_back(
+        {"Fig. 5" + suffix, "Magnitude of p/delta_y in deg/s per per cent of control.", std::move(five)});
     for (const Selection& selection : decoded->selections) {
       if (selection.order == first.order)
         out.push_back(windows(table, selection, select(table, selection), suffix));
@@ -231,11 +234,12 @@ Result<std::vector<StudyFigure>> figures(const CampaignSpec& spec, const RowSour
     eight.title = "Roll response of the candidates" + suffix;
     eight.columns = 2;
     for (const Selection& selection : decoded->selections) {
-      eight.panels.push_back(
-          responses("n = " + std::to_string(selection.order) + ", " + selection.limit_text(), table,
-                    select(table, selection).candidates, truth));
+      const Indices candidates = select(table, selection).candidates;
+      eight.panels.push_back(responses("n = " + std::to_string(selection.order) + ", " +
+                                           selection.limit_text() + (candidates.empty() ? ": none" : ""),
+                                       table, candidates, truth));
     }
-    out.push_back({"Fig. 8", "As Fig. 5, for the candidates.", std::move(eight)});
+    out.push_back({"Fig. 8" + suffix, "As Fig. 5, for the candidates.", std::move(eight)});
     const Selection& last = decoded->selections.back();
     out.push_back(eigenvalues(table, select(table, last), suffix + ", " + last.limit_text()));
   }

@@ -1,6 +1,7 @@
 #include "campaigns/candidates/summary.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -41,8 +42,10 @@ class CellTables {
 
   /// A claim of print without an interval of ours: same behaviour, or not.
   void add_claim(TableRow row, bool alike, const std::string& why) const {
-    if (!std::isnan(row.published)) row.verdict = alike ? "shape" : "differs";
-    row.why = why;
+    if (!std::isnan(row.published)) {
+      row.verdict = alike ? "shape" : "differs";
+      row.why = why;
+    }
     out_.push_back(std::move(row));
   }
 
@@ -254,6 +257,13 @@ Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& 
       add_levels(table, selected, own_tables);
     }
   }
+  // Table by table, each in the order of cells and selections.
+  const auto place = [](const TableRow& row) {
+    static constexpr std::array kTables = {"Models", "Fig. 4", "Section 4", "Section 5.1", "Section 5.2"};
+    return std::find(kTables.begin(), kTables.end(), row.table) - kTables.begin();
+  };
+  std::stable_sort(out.begin(), out.end(),
+                   [&](const TableRow& one, const TableRow& other) { return place(one) < place(other); });
   return out;
 }
 

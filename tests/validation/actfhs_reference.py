@@ -66,5 +66,22 @@ for name, filtered, wanted in [("phugoid, SCAS", False, (4.9, 0.4)), ("roll/flap
 lead_lag = values[np.argmin(abs(values - 12j))]
 print(f"bare lead-lag {abs(lead_lag):.3f} rad/s, D {-lead_lag.real / abs(lead_lag):.4f}")
 assert abs(abs(lead_lag) - 12) < 0.3
+# How fast the best predictor of the flight test forgets: gusts on u, v, w alone drive the aircraft, so that no filter forgets
+# its neutral spiral, whatever the noise (campaigns/candidates/spec.toml).
+with open("campaigns/candidates/spec.toml", "rb") as f:
+    flight = tomllib.load(f)["flight"]
+keep = np.exp(-1 / model["rate_hz"] / flight["gust_time_constant_s"])
+a_d, c_d = np.array(model["A"]), np.array(model["C"])
+a_g = np.block([[a_d, -(a_d - np.eye(n))[:, :3]], [np.zeros((3, n)), keep * np.eye(3)]])
+c_g = np.hstack([c_d, np.zeros((8, 3))])
+q = np.zeros((n + 3, n + 3))
+q[n:, n:] = np.eye(3) * flight["gust_m_s"] ** 2 * (1 - keep**2)
+for share in (1.0, 0.02):
+    r = np.diag((share * np.array(flight["noise"])) ** 2)
+    cov = sl.solve_discrete_are(a_g.T, c_g.T, q, r)
+    k = a_g @ cov @ c_g.T @ np.linalg.inv(c_g @ cov @ c_g.T + r)
+    slowest = np.sort(abs(np.linalg.eigvals(a_g - k @ c_g)))[::-1]
+    print(f"predictor at {share} of the noise: eigenvalues {slowest[0]:.7f}, {slowest[1]:.4f}, {slowest[2]:.4f} ...")
+    assert 0.999 < slowest[0] < 1.0
 print(f"largest error of T (relative) and D: {worst:.2g}")
 sys.exit(0 if worst < 1e-3 else 1)

@@ -116,6 +116,15 @@ TEST(FlightTest, WithoutNoiseAndGustsTheMultistepsAreTheModelsResponse) {
   EXPECT_NEAR(validation->rms, 0.0, 1e-8);
 }
 
+TEST(FlightTest, InGustsTheTruthItselfIsAdequateAndNoMore) {
+  const CampaignSpec spec = shipped_spec();
+  const CandidatesSpec own = decoded(spec);
+  const FlownTest flown = fly_test(own.truth, own.flight, spec.trial_seed({0, 0}));
+  const auto validation = validate(own.truth.model, flown.multisteps);
+  ASSERT_TRUE(validation.has_value());
+  EXPECT_NEAR(validation->agreement, 0.85, 0.005);
+}
+
 TEST(FlightTest, TheScasFeedsBackTheMeasuredOutputsASampleLate) {
   const CampaignSpec spec = shipped_spec();
   CandidatesSpec own = decoded(spec, 1);
