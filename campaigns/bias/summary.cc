@@ -21,15 +21,16 @@ struct Place {
   const char* why;
 };
 constexpr std::array kPlaces = {
-    Place{"phugoid", 0, 0.082,
-          "the window reaches over the phugoid to the zeros beside it, which are not printed"},
+    Place{"phugoid", 0, 0.082, "zeros beside the phugoid shape the peak, and are not printed"},
     Place{"short period", 0, 0.48,
-          "a small error: it hangs on how near the zeros lie, which are not printed"},
+          "nil for a linear plant: what is left is the servos' rate limit, which hangs on the amplitude"},
     Place{"zero of r/zeta", 1, 0.050,
-          "the zero stands at the border line itself: its error hangs on its exact place"},
-    Place{"Dutch roll", 1, 0.33, "a small error: it hangs on damping and zeros, which are not printed"}};
+          "the zero stands at the border line: runs scatter by more than the printed error, and the mean by "
+          "a lot"},
+    Place{"Dutch roll", 1, 0.33,
+          "no variation tried reaches it: a narrower peak or nearer zeros than Tables A-1, A-2, A-5 would"}};
 
-constexpr const char* kRangeWhy = "largest errors stand at phugoid and zero: see Table 4-2";
+constexpr const char* kRangeWhy = "ruled by phugoid and zero, as Table 4-2";
 
 double mean_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -55,9 +56,10 @@ class CellTables {
 
   void add_table_4_3() {
     for (std::size_t r = 0; r < kResponses.size(); ++r) {
-      statistic("4-3", row_of(r), "mean magnitude error", "dB",
-                "a mean of errors of both signs, ruled by those at phugoid and zero: see Table 4-2",
-                [&, r](Picks picks) { return mean_of(mean_error(runs_, r, picks).magnitude_db); });
+      statistic(
+          "4-3", row_of(r), "mean magnitude error", "dB",
+          "servo rate limits: nil for a linear plant and at half the amplitude, which is not printed",
+          [&, r](Picks picks) { return mean_of(mean_error(runs_, r, picks).magnitude_db); });
     }
   }
 
@@ -102,7 +104,7 @@ class CellTables {
       const Place& place = kPlaces[mode.place];
       const std::size_t line = runs_.nearest_line(place.frequency_hz);
       statistic("4-5", mode.name, "observed amplification", "dB",
-                "a ratio to the mean error of Table 4-3, which is a small difference of large numbers",
+                "divides by the mean error of Table 4-3, which hangs on the amplitude",
                 [&, line](Picks picks) {
                   const double there = magnitude_error_db(mean_ratio(runs_, place.response, line, picks));
                   const double mean = mean_of(mean_error(runs_, place.response, picks).magnitude_db);
@@ -120,7 +122,7 @@ class CellTables {
         TableRow row = begin("Section 4.2.3", std::string(kResponses[r].bias_place),
                              "bias estimate, " + std::string(kReadings[i].name), "bias estimate", "dB");
         fill_mean(row, decibel, kPublishedRepetitions);
-        judge_by_order(row, "curvature of the response hangs on derivatives that are not printed");
+        judge_by_order(row, "one reading of several; at 0.08 Hz the window is one-sided");
         out_.push_back(std::move(row));
       }
     }

@@ -4,51 +4,29 @@
 #include <cmath>
 
 #include "campaigns/base/prepared_trials.h"
-#include "core/base/check.h"
+#include "campaigns/base/spec_path.h"
 
 namespace fatmc::conditions {
 namespace {
 
-const std::vector<double>& need(const TrialRow& row, const std::string& name) {
-  const std::vector<double>* values = row.array(name);
-  FATMC_CHECK(values != nullptr, "a row of the conditions study holds all its arrays");
-  return *values;
-}
-
-double metric(const TrialRow& row, std::string_view name) {
-  for (const auto& [key, value] : row.metrics) {
-    if (key == name) return value;
-  }
-  FATMC_CHECK(false, "a row of the conditions study holds all its metrics");
-}
-
-const Tree* at(const Tree& tree, std::initializer_list<std::string_view> path) {
-  const Tree* here = &tree;
-  for (const std::string_view key : path) {
-    if (here != nullptr) here = here->find(key);
-  }
-  return here;
+/// A value of the cell's own table, or else of its experiment.
+const Tree* value_of(const CampaignSpec& cell, const char* own, const char* path) {
+  const Tree* value = cell.cells.front().tree.find(own);
+  return value != nullptr ? value : find_at(cell.tree, path);
 }
 
 Condition condition_of(const CampaignSpec& cell) {
   Condition out;
-  const auto number = [](const Tree* tree, double fallback) {
-    return tree != nullptr ? real_value(*tree).value_or(fallback) : fallback;
-  };
-  const Tree& own = cell.cells.front().tree;
-  const Tree* sigma = own.find("turbulence_sigma_m_s");
-  out.turbulence_m_s = number(
-      sigma != nullptr ? sigma : at(cell.tree, {"experiment", "environment", "turbulence_sigma_m_s"}), 0.0);
-  const Tree* gain = at(cell.tree, {"experiment", "controller", "gain"});
-  if (gain != nullptr && gain->array() != nullptr && !gain->array()->items.empty())
-    out.gain = number(&gain->array()->items.front(), 0.0);
-  if (const Tree* grade = at(cell.tree, {"experiment", "imu", "grade"})) {
+  if (const Tree* sigma =
+          value_of(cell, "turbulence_sigma_m_s", "experiment.environment.turbulence_sigma_m_s"))
+    out.turbulence_m_s = real_value(*sigma).value_or(0.0);
+  if (const Tree* gain = find_at(cell.tree, "experiment.controller.gain.1"))
+    out.gain = real_value(*gain).value_or(0.0);
+  if (const Tree* grade = find_at(cell.tree, "experiment.imu.grade")) {
     if (const auto* text = std::get_if<std::string>(&grade->value)) out.grade = *text;
   }
-  const Tree* coordinator = own.find("turn_coordinator");
-  if (coordinator == nullptr) coordinator = at(cell.tree, {"experiment", "controller", "turn_coordinator"});
-  if (coordinator != nullptr) {
-    if (const auto* on = std::get_if<bool>(&coordinator->value)) out.turn_coordinator = *on;
+  if (const Tree* on = value_of(cell, "turn_coordinator", "experiment.controller.turn_coordinator")) {
+    if (const auto* value = std::get_if<bool>(&on->value)) out.turn_coordinator = *value;
   }
   return out;
 }
@@ -68,18 +46,19 @@ struct LineSums {
 };
 
 void add_run(const TrialRow& row, ConditionRuns& out, std::array<LineSums, kElements.size()>& sums) {
-  out.frequency_hz = need(row, std::string(kFrequency));
+  out.frequency_hz = array_of(row, kFrequency);
   for (std::size_t e = 0; e < kElements.size(); ++e) {
-    out.relative_error[e].push_back(metric(row, name_of(kElements[e], kRelativeError)));
-    sums[e].add(need(row, name_of(kElements[e], kErrorReal)), need(row, name_of(kElements[e], kErrorImag)));
+    out.relative_error[e].push_back(metric_of(row, name_of(kElements[e], kRelativeError)));
+    sums[e].add(array_of(row, name_of(kElements[e], kErrorReal)),
+                array_of(row, name_of(kElements[e], kErrorImag)));
   }
   for (std::size_t j = 0; j < kMedianSnr.size(); ++j)
-    out.median_snr_db[j].push_back(metric(row, kMedianSnr[j]));
-  out.outliers.push_back(metric(row, kOutliers));
-  out.inside_95.push_back(metric(row, kInside95));
+    out.median_snr_db[j].push_back(metric_of(row, kMedianSnr[j]));
+  out.outliers.push_back(metric_of(row, kOutliers));
+  out.inside_95.push_back(metric_of(row, kInside95));
   double limited = 0.0;
   for (const char* servo : {"aileron", "left_ruddervator", "right_ruddervator"})
-    limited = std::max(limited, metric(row, std::string("share_at_rate_limit_") + servo));
+    limited = std::max(limited, metric_of(row, std::string("share_at_rate_limit_") + servo));
   out.at_rate_limit.push_back(limited);
 }
 

@@ -53,23 +53,33 @@ Result<Insensitivity> insensitivity_curve(const CampaignSpec& spec) {
 
 Status add_insensitivity_rows(const CampaignSpec& spec, const std::vector<PublishedFigure>& published,
                               std::vector<TableRow>& out) {
-  auto s = insensitivity_at_lines(spec);
-  if (!s) return fail(s.error());
+  // The dip at 0.08 Hz that T describes lies below the lines of chapter 5: its figure has chapter 4's range.
+  auto lines = insensitivity_at_lines(spec);
+  if (!lines) return fail(lines.error());
+  auto curve = insensitivity_curve(spec);
+  if (!curve) return fail(curve.error());
   const auto add = [&](const char* row, const char* quantity, double value) {
     TableRow r = table_row("Fig. 5-2", row, quantity, "dB");
     r.published = published_value(published, r);
     r.value = value;
-    judge_exact(r, 1.0, "hangs on roll damping and derivatives by rotation, which are not printed");
+    judge_exact(r, 1.0, "hangs on damping derivatives by rotation, which poles and zeros leave open");
     out.push_back(std::move(r));
   };
-  const auto largest = [&](std::size_t axis) {
-    return *std::max_element(s->decibel[axis].begin(), s->decibel[axis].end());
+  const auto largest = [](const std::vector<double>& values) {
+    return *std::max_element(values.begin(), values.end());
   };
-  add("roll", "at the lowest line", s->decibel[0].front());
-  add("roll", "largest", largest(0));
-  add("pitch", "smallest", *std::min_element(s->decibel[1].begin(), s->decibel[1].end()));
-  add("yaw", "smallest", *std::min_element(s->decibel[2].begin(), s->decibel[2].end()));
-  add("pitch and yaw", "largest", std::max(largest(1), largest(2)));
+  const auto smallest = [](const std::vector<double>& values) {
+    return *std::min_element(values.begin(), values.end());
+  };
+  add("roll", "smallest, 0.05 to 5 Hz", smallest(curve->decibel[0]));
+  add("roll", "largest, 0.05 to 5 Hz", largest(curve->decibel[0]));
+  add("roll", "largest, at the lines flown", largest(lines->decibel[0]));
+  add("pitch", "smallest, 0.05 to 5 Hz", smallest(curve->decibel[1]));
+  add("yaw", "smallest, 0.05 to 5 Hz", smallest(curve->decibel[2]));
+  add("pitch and yaw", "largest, 0.05 to 5 Hz",
+      std::max(largest(curve->decibel[1]), largest(curve->decibel[2])));
+  add("pitch and yaw", "largest, at the lines flown",
+      std::max(largest(lines->decibel[1]), largest(lines->decibel[2])));
   return {};
 }
 

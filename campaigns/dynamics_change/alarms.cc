@@ -19,9 +19,9 @@ double defined_from(const MonitoredRun& run) { return run.window_s + quarter(run
 std::string_view name(Detector detector) {
   switch (detector) {
     case Detector::csl:
-      return "CSL (Bonferroni)";
-    case Detector::csl_min:
-      return "CSL (smallest p)";
+      return "CSL";
+    case Detector::robust:
+      return "CSL without gates";
     case Detector::noise_rise:
       return "noise rise";
   }
@@ -34,7 +34,7 @@ std::vector<double> alarm_statistic(const MonitoredRun& run, Detector detector) 
   for (std::size_t i = lag; i < out.size(); ++i) {
     if (run.time(i) < defined_from(run) - kRounding) continue;  // both for the same epochs
     if (detector != Detector::noise_rise) {
-      out[i] = 1.0 - (detector == Detector::csl ? run.csl : run.csl_min)[i];
+      out[i] = 1.0 - (detector == Detector::csl ? run.csl : run.robust)[i];
       continue;
     }
     double rise = -std::numeric_limits<double>::infinity();

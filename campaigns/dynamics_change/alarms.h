@@ -1,7 +1,7 @@
 // Alarms over a monitored flight, and what they cost.
 //
-//   confident stability level   alarm where CSL < threshold: T's (section 5.7), with Bonferroni's rule over the elements of a line
-//                               (Fig. 5-16) or the smallest p (2.271)
+//   confident stability level   alarm where CSL < threshold: T's (section 5.7, Fig. 5-16)
+//   CSL without gates           the same without the gates of nominal stability and SNR (2.272): robust stability alone
 //   noise rise                  alarm where D(t) = max over p, q, r of L_i(t) - L_i(t - W/4) > threshold, L_i the mean over the
 //                               lines of ln C_V_noise,ii. A change within the window makes the record aperiodic: the response
 //                               to the references no longer repeats, and leaks into the lines between, from which the noise
@@ -17,8 +17,8 @@
 
 namespace fatmc::dynamics_change {
 
-enum class Detector { csl, csl_min, noise_rise };
-inline constexpr Detector kDetectors[] = {Detector::csl, Detector::csl_min, Detector::noise_rise};
+enum class Detector { csl, robust, noise_rise };
+inline constexpr Detector kDetectors[] = {Detector::csl, Detector::robust, Detector::noise_rise};
 std::string_view name(Detector detector);
 
 /// What is compared with a threshold, larger is worse, one value an epoch: 1 - CSL, or D. NaN while it is not defined.

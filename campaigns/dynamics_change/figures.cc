@@ -61,7 +61,7 @@ StudyFigure history_figure(const CampaignSpec& spec, const std::map<std::uint32_
   StudyFigure out;
   const bool csl = detector != Detector::noise_rise;
   out.id = detector == Detector::csl ? "Fig. 5-16"
-           : csl                     ? "Fig. 5-16 with the smallest p"
+           : csl                     ? "Fig. 5-16 without gates"
                                      : "Noise rise after a change";
   out.figure.title = csl ? "Confident stability level around a change of the dynamics"
                          : "Rise of the estimated noise within a quarter window";
@@ -71,7 +71,7 @@ StudyFigure history_figure(const CampaignSpec& spec, const std::map<std::uint32_
     if (std::isinf(cell.runs.front().onset_s)) continue;
     runs += cell.runs.size();
     const History values = history(cell, [&](const MonitoredRun& run) {
-      return detector == Detector::csl ? run.csl : csl ? run.csl_min : alarm_statistic(run, detector);
+      return detector == Detector::csl ? run.csl : csl ? run.robust : alarm_statistic(run, detector);
     });
     if (values.empty()) continue;
     plot::Panel panel = history_panel(spec.cells[index].name, csl ? "CSL" : "D", cell.runs.front().epoch_s,
@@ -81,9 +81,9 @@ StudyFigure history_figure(const CampaignSpec& spec, const std::map<std::uint32_
   }
   out.caption =
       std::to_string(runs) + " flights. " +
-      (csl ? (detector == Detector::csl ? "Bonferroni over the elements"
-                                        : "Smallest p of a line's elements") +
-                 std::string("; before a full window it begins with zeros.")
+      (csl ? (detector == Detector::csl ? "With" : "Without") +
+                 std::string(
+                     " the gates of nominal stability and SNR; before a full window it begins with zeros.")
            : "D: largest rise over a quarter window of the mean log noise of p, q, r; spectra from the lines "
              "between the excited ones.");
   return out;
@@ -158,7 +158,7 @@ Result<std::vector<StudyFigure>> figures(const CampaignSpec& spec, const RowSour
   std::vector<StudyFigure> out;
   if (cells.empty()) return out;
   out.push_back(history_figure(spec, cells, Detector::csl, thresholds->csl));
-  out.push_back(history_figure(spec, cells, Detector::csl_min, thresholds->csl));
+  out.push_back(history_figure(spec, cells, Detector::robust, thresholds->csl));
   out.push_back(history_figure(spec, cells, Detector::noise_rise, thresholds->noise_rise));
   StudyFigure roc = roc_figure(spec, cells);
   if (!roc.figure.panels.empty()) out.push_back(std::move(roc));

@@ -36,7 +36,6 @@ MonitoredCell read_cell(std::uint32_t cell, const RowSource& rows) {
                      .flown_s = metric(row, kFlown),
                      .diverged = row.outcome == "diverged",
                      .csl = array(row, kCslSsv),
-                     .csl_min = array(row, kCslMin),
                      .robust = array(row, kRobustSsv),
                      .noise = {array(row, kNoise[0]), array(row, kNoise[1]), array(row, kNoise[2])}};
     out.runs.push_back(std::move(run));

@@ -14,7 +14,7 @@ struct MonitoredRun {
   double onset_s = 0.0;  ///< infinite: nothing changes
   double duration_s = 0.0, strength = 0.0, flown_s = 0.0;
   bool diverged = false;
-  std::vector<double> csl, csl_min, robust;
+  std::vector<double> csl, robust;
   std::array<std::vector<double>, 3> noise;
 
   [[nodiscard]] std::size_t epochs() const { return csl.size(); }

@@ -6,8 +6,6 @@ namespace fatmc::dynamics_change {
 // One value an epoch, epochs `kEpoch` s apart, the first after one epoch.
 inline constexpr const char* kCslSsv =
     "p_total_ssv";  ///< confident stability level (T 2.273), by the rule of the spec
-/// The same with the smallest p of a line's elements, the reading of (2.271), whatever the rule of the spec.
-inline constexpr const char* kCslMin = "p_total_ssv_min";
 inline constexpr const char* kRobustSsv = "p_band_ssv";    ///< without the gates of nominal stability and SNR
 inline constexpr const char* kNominal = "nominal_stable";  ///< 1: at every line
 /// Mean over the lines of ln of the output noise, C_V_noise,ii (ln of rad^2/s^2), of p, q, r.

@@ -7,7 +7,6 @@
 #include "campaigns/dynamics_change/change_cell.h"
 #include "campaigns/dynamics_change/row_arrays.h"
 #include "core/base/text.h"
-#include "core/ident/interpolation_bias.h"
 #include "core/stability/stability_monitor.h"
 
 namespace fatmc::dynamics_change {
@@ -38,20 +37,6 @@ double noise_level(const FrmEstimate& estimate, int output) {
     ++lines;
   }
   return lines > 0 ? sum / lines : std::numeric_limits<double>::quiet_NaN();
-}
-
-/// p_total of the band by ssv, with the smallest confidence of a line's elements as the line's.
-double csl_by_min(const MonitorEpoch& epoch, const FrmEstimate& estimate, const MatrixStack<double>& bias,
-                  const StabilityOptions& options) {
-  double p = 1.0;
-  for (int k = 0; k < estimate.line_count() && p > 0.0; ++k) {
-    const LineStability& line = epoch.lines[static_cast<std::size_t>(k)];
-    if (line.status != JudgementStatus::ok || !line.snr_sufficient || !(line.ssv_nominal < 1.0)) return 0.0;
-    const EstimatedLine estimated = estimated_line(estimate, bias, k);
-    p *= line_confidence(line.kappa_ssv, estimated.sigma, systematic_error(estimated, options),
-                         estimated.degrees_of_freedom, CombinationRule::min);
-  }
-  return p;
 }
 
 class ChangeTrials final : public PreparedCell {
@@ -121,7 +106,7 @@ class ChangeTrials final : public PreparedCell {
     StabilityMonitor monitor(grid_, 3, nominal_, cell_.judgement);
     const auto every =
         static_cast<Eigen::Index>(std::llround(cell_.epoch_s * cell_.flown.experiment.flight.rate_hz));
-    std::vector<double> csl, csl_min, robust, nominally;
+    std::vector<double> csl, robust, nominally;
     std::array<std::vector<double>, 3> noise;
     std::array<double, 3> y, u, r;
     for (Eigen::Index t = 0; t < record.samples; ++t) {
@@ -133,20 +118,15 @@ class ChangeTrials final : public PreparedCell {
       }
       monitor.push(y, u, r);
       if ((t + 1) % every != 0) continue;
-      const MonitorEpoch epoch = monitor.epoch();
-      const BandStability& band = epoch.band;
+      const BandStability band = monitor.epoch().band;
       csl.push_back(band.p_total_ssv);
-      csl_min.push_back(csl_by_min(epoch, monitor.estimate(), interpolation_bias(grid_, monitor.estimate()),
-                                   cell_.judgement));
       robust.push_back(band.p_ssv);
       nominally.push_back(band.nominally_stable_ssv ? 1.0 : 0.0);
       for (int i = 0; i < 3; ++i)
         noise[static_cast<std::size_t>(i)].push_back(noise_level(monitor.estimate(), i));
     }
-    row.arrays = {{kCslSsv, std::move(csl)},
-                  {kCslMin, std::move(csl_min)},
-                  {kRobustSsv, std::move(robust)},
-                  {kNominal, std::move(nominally)}};
+    row.arrays = {
+        {kCslSsv, std::move(csl)}, {kRobustSsv, std::move(robust)}, {kNominal, std::move(nominally)}};
     for (std::size_t i = 0; i < 3; ++i) row.arrays.emplace_back(kNoise[i], std::move(noise[i]));
   }
 

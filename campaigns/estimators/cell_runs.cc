@@ -4,18 +4,12 @@
 #include <cmath>
 
 #include "campaigns/base/decoder.h"
-#include "core/base/check.h"
 
 namespace fatmc::estimators {
 namespace {
 
-const std::vector<double>& need(const TrialRow& row, const std::string& name) {
-  const std::vector<double>* values = row.array(name);
-  FATMC_CHECK(values != nullptr, "a row of the estimator study holds all its arrays");
-  return *values;
-}
-
-std::optional<double> metric(const TrialRow& row, const std::string& name) {
+// The cost of a run with an estimate of zero is missing.
+std::optional<double> metric_if_any(const TrialRow& row, const std::string& name) {
   for (const auto& [key, value] : row.metrics) {
     if (key == name) return value;
   }
@@ -23,20 +17,19 @@ std::optional<double> metric(const TrialRow& row, const std::string& name) {
 }
 
 void add_run(const TrialRow& row, CellRuns& out) {
-  out.frequency_hz = need(row, std::string(kFrequency));
+  out.frequency_hz = array_of(row, kFrequency);
   for (std::size_t e = 0; e < kEstimators.size(); ++e) {
     const Estimator& estimator = kEstimators[e];
     EstimatorRuns& runs = out.of[e];
-    const auto& re = need(row, name_of(estimator, kErrorReal));
-    const auto& im = need(row, name_of(estimator, kErrorImag));
+    const auto& re = array_of(row, name_of(estimator, kErrorReal));
+    const auto& im = array_of(row, name_of(estimator, kErrorImag));
     std::vector<std::complex<double>> error;
     for (std::size_t k = 0; k < re.size(); ++k) error.emplace_back(re[k], im[k]);
     runs.error.push_back(std::move(error));
-    runs.inside_90.push_back(metric(row, name_of(estimator, kInside90)).value_or(0.0));
-    runs.unnoticed.push_back(metric(row, name_of(estimator, kUnnoticed)).value_or(0.0));
-    if (const auto value = metric(row, name_of(estimator, kRelativeError)))
-      runs.relative_error.push_back(*value);
-    if (const auto value = metric(row, name_of(estimator, kCost))) runs.cost.push_back(*value);
+    runs.inside_90.push_back(metric_of(row, name_of(estimator, kInside90)));
+    runs.unnoticed.push_back(metric_of(row, name_of(estimator, kUnnoticed)));
+    runs.relative_error.push_back(metric_of(row, name_of(estimator, kRelativeError)));
+    if (const auto value = metric_if_any(row, name_of(estimator, kCost))) runs.cost.push_back(*value);
   }
 }
 
@@ -75,27 +68,23 @@ std::string CellRuns::failures() const {
   return failed > 0 ? std::to_string(failed) + " trials without an estimate" : "";
 }
 
-Result<std::vector<CellRuns>> collect_cells(const CampaignSpec& spec, const RowSource& rows) {
-  std::vector<CellRuns> out;
-  for (std::uint32_t index = 0; index < spec.cells.size(); ++index) {
-    CellRuns cell;
-    Decoder table(spec.cells[index].tree, "cell");
-    cell.name = table.text("label", spec.cells[index].name);
-    if (table.has("shows")) cell.shows = table.texts("shows");
-    if (table.error()) return fail(*table.error());
-    rows(index, [&](const TrialRow& row) {
-      ++cell.trials;
-      if (row.outcome == "ok") return add_run(row, cell);
-      ++cell.failed;
-    });
-    // A trial without an estimate has no region and no error inside any limit.
-    for (EstimatorRuns& runs : cell.of) {
-      runs.inside_90.resize(cell.trials, 0.0);
-      runs.unnoticed.resize(cell.trials, 0.0);
-    }
-    out.push_back(std::move(cell));
+Result<CellRuns> collect_cell(const CampaignSpec& spec, std::uint32_t index, const RowSource& rows) {
+  CellRuns cell;
+  Decoder table(spec.cells.at(index).tree, "cell");
+  cell.name = table.text("label", spec.cells[index].name);
+  if (table.has("shows")) cell.shows = table.texts("shows");
+  if (table.error()) return fail(*table.error());
+  rows(index, [&](const TrialRow& row) {
+    ++cell.trials;
+    if (row.outcome == "ok") return add_run(row, cell);
+    ++cell.failed;
+  });
+  // A trial without an estimate has no region and no error inside any limit.
+  for (EstimatorRuns& runs : cell.of) {
+    runs.inside_90.resize(cell.trials, 0.0);
+    runs.unnoticed.resize(cell.trials, 0.0);
   }
-  return out;
+  return cell;
 }
 
 }  // namespace fatmc::estimators

@@ -42,7 +42,8 @@ struct CellRuns {
   [[nodiscard]] std::string failures() const;  ///< a remark, or empty
 };
 
-/// All cells, in their order; the error is that of a cell's own keys `label` and `shows`.
-Result<std::vector<CellRuns>> collect_cells(const CampaignSpec& spec, const RowSource& rows);
+/// One cell; the error is that of its own keys `label` and `shows`. Cells are gathered one at a time: a hundred times T's
+/// size is 26 MB a cell.
+Result<CellRuns> collect_cell(const CampaignSpec& spec, std::uint32_t index, const RowSource& rows);
 
 }  // namespace fatmc::estimators

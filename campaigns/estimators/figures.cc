@@ -118,19 +118,22 @@ StudyFigure figure_of(const CellRuns& cell, const std::string& id, bool decibel)
 }  // namespace
 
 Result<std::vector<StudyFigure>> figures(const CampaignSpec& spec, const RowSource& rows) {
-  const auto cells = collect_cells(spec, rows);
-  if (!cells) return fail(cells.error());
+  static constexpr std::array kPairs = {std::pair{"Fig. 3-10", "Fig. 3-11"},
+                                        std::pair{"Fig. 3-12", "Fig. 3-13"},
+                                        std::pair{"Fig. 3-14", "Fig. 3-15"}};
   std::vector<StudyFigure> out;
-  for (const CellRuns& cell : *cells) {
-    if (cell.trials == cell.failed) continue;
-    for (const auto& [plain, decibel] :
-         {std::pair{"Fig. 3-10", "Fig. 3-11"}, std::pair{"Fig. 3-12", "Fig. 3-13"},
-          std::pair{"Fig. 3-14", "Fig. 3-15"}}) {
-      if (cell.shown_in(plain)) out.push_back(figure_of(cell, plain, false));
-      if (cell.shown_in(decibel)) out.push_back(figure_of(cell, decibel, true));
+  UserChoices choices;
+  for (std::uint32_t index = 0; index < spec.cells.size(); ++index) {
+    const auto cell = collect_cell(spec, index, rows);
+    if (!cell) return fail(cell.error());
+    if (cell->trials == cell->failed) continue;
+    for (const auto& [plain, decibel] : kPairs) {
+      if (cell->shown_in(plain)) out.push_back(figure_of(*cell, plain, false));
+      if (cell->shown_in(decibel)) out.push_back(figure_of(*cell, decibel, true));
     }
+    if (cell->shown_in("Section 3.5")) choices.add(spec, index, *cell);
   }
-  if (auto choices = user_choices_figure(spec, *cells)) out.push_back(std::move(*choices));
+  if (auto figure = choices.figure()) out.push_back(std::move(*figure));
   return out;
 }
 

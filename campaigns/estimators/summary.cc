@@ -183,15 +183,14 @@ void add_user_choices(const CellRuns& cell, std::vector<TableRow>& out) {
 Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& rows) {
   auto published = decode_published(spec);
   if (!published) return fail(published.error());
-  const auto cells = collect_cells(spec, rows);
-  if (!cells) return fail(cells.error());
   std::vector<TableRow> means, ranges, linear, nonlinear, overview;
-  for (std::size_t index = 0; index < cells->size(); ++index) {
-    const CellRuns& cell = (*cells)[index];
+  for (std::uint32_t index = 0; index < spec.cells.size(); ++index) {
+    const auto gathered = collect_cell(spec, index, rows);
+    if (!gathered) return fail(gathered.error());
+    const CellRuns& cell = *gathered;
     if (cell.trials == cell.failed) continue;
-    const std::vector<PublishedFigure> figures = compared_with_print(spec, static_cast<std::uint32_t>(index))
-                                                     ? *published
-                                                     : std::vector<PublishedFigure>{};
+    const std::vector<PublishedFigure> figures =
+        compared_with_print(spec, index) ? *published : std::vector<PublishedFigure>{};
     add_error_tables(cell, figures, means, ranges);
     add_section_3_4_1(cell, figures, linear);
     add_section_3_4_2(cell, figures, nonlinear);

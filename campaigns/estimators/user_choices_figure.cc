@@ -1,11 +1,9 @@
 #include "campaigns/estimators/user_choices_figure.h"
 
-#include <algorithm>
-#include <map>
 #include <numeric>
-#include <tuple>
 
 #include "campaigns/base/prepared_trials.h"
+#include "campaigns/base/spec_path.h"
 
 namespace fatmc::estimators {
 namespace {
@@ -18,43 +16,39 @@ struct Choice {
   bool windy = false;
 };
 
-double number(const Tree& tree, std::initializer_list<std::string_view> path) {
-  const Tree* here = &tree;
-  for (const std::string_view key : path) {
-    if (here != nullptr) here = here->find(key);
-  }
-  return here != nullptr ? real_value(*here).value_or(0.0) : 0.0;
+double number(const Tree& tree, const char* path) {
+  const Tree* value = find_at(tree, path);
+  return value != nullptr ? real_value(*value).value_or(0.0) : 0.0;
 }
 
-std::optional<Choice> choice_of(const CampaignSpec& spec, std::size_t index) {
-  const auto cell = spec_of_cell(spec, static_cast<std::uint32_t>(index));
+std::optional<Choice> choice_of(const CampaignSpec& spec, std::uint32_t index) {
+  const auto cell = spec_of_cell(spec, index);
   if (!cell) return std::nullopt;
   Choice out;
-  out.order = static_cast<int>(number(cell->tree, {"estimator", "order"}));
-  out.q = 2 * static_cast<int>(number(cell->tree, {"estimator", "n_e"})) + 1 - (out.order + 1);
-  out.periods = static_cast<int>(number(cell->tree, {"experiment", "excitation", "periods"}));
-  out.windy = number(cell->cells.front().tree, {"turbulence_sigma_m_s"}) > 0.0;
+  out.order = static_cast<int>(number(cell->tree, "estimator.order"));
+  out.q = 2 * static_cast<int>(number(cell->tree, "estimator.n_e")) + 1 - (out.order + 1);
+  out.periods = static_cast<int>(number(cell->tree, "experiment.excitation.periods"));
+  out.windy = number(cell->cells.front().tree, "turbulence_sigma_m_s") > 0.0;
   return out;
 }
 
 }  // namespace
 
-std::optional<StudyFigure> user_choices_figure(const CampaignSpec& spec, const std::vector<CellRuns>& cells) {
+void UserChoices::add(const CampaignSpec& spec, std::uint32_t index, const CellRuns& cell) {
+  const std::vector<double>& errors = cell.of[kIndirect].relative_error;
+  const auto choice = choice_of(spec, index);
+  if (!choice || errors.empty()) return;
+  plot::Line& line = curves_[{choice->windy, choice->order, choice->periods}];
+  line.name = "R = " + std::to_string(choice->order) + ", P = " + std::to_string(choice->periods);
+  line.x.push_back(choice->q);
+  line.y.push_back(100.0 * std::accumulate(errors.begin(), errors.end(), 0.0) /
+                   static_cast<double>(errors.size()));
+}
+
+std::optional<StudyFigure> UserChoices::figure() const {
   static constexpr std::array kHues = {plot::Hue::blue, plot::Hue::orange, plot::Hue::green,
                                        plot::Hue::purple};
-  std::map<std::tuple<bool, int, int>, plot::Line> curves;  // windy, R, P
-  for (std::size_t index = 0; index < cells.size(); ++index) {
-    const std::vector<double>& errors = cells[index].of[kIndirect].relative_error;
-    if (!cells[index].shown_in("Section 3.5") || errors.empty()) continue;
-    const auto choice = choice_of(spec, index);
-    if (!choice) continue;
-    plot::Line& line = curves[{choice->windy, choice->order, choice->periods}];
-    line.name = "R = " + std::to_string(choice->order) + ", P = " + std::to_string(choice->periods);
-    line.x.push_back(choice->q);
-    line.y.push_back(100.0 * std::accumulate(errors.begin(), errors.end(), 0.0) /
-                     static_cast<double>(errors.size()));
-  }
-  if (curves.empty()) return std::nullopt;
+  if (curves_.empty()) return std::nullopt;
   StudyFigure out{"Section 3.5",
                   "rms over the lines of |Ĝ − G0|/|G0| of the fast LPM (indirect), mean over runs, against "
                   "the degrees of "
@@ -70,8 +64,9 @@ std::optional<StudyFigure> user_choices_figure(const CampaignSpec& spec, const s
     panel.x.label = "degrees of freedom q";
     panel.y = {"error, %", plot::Scale::logarithmic, {}, {}};
     std::size_t place = 0;
-    for (auto& [key, line] : curves) {
+    for (const auto& [key, curve] : curves_) {
       if (std::get<0>(key) != windy) continue;
+      plot::Line line = curve;
       line.hue = kHues[place++ % kHues.size()];
       panel.marks.emplace_back(plot::Points{line.name, line.x, line.y, line.hue});
       panel.marks.emplace_back(std::move(line));

@@ -34,7 +34,7 @@ std::string contents(const std::vector<CampaignPage>& campaigns) {
     for (const TableRow& row : campaign.rows) {
       if (std::find(seen.begin(), seen.end(), row.table) != seen.end()) continue;
       seen.push_back(row.table);
-      what += (what.empty() ? "" : ", ") + std::string("<a href=\"#") + id_of(campaign) + "-" +
+      what += (what.empty() ? "" : ", ") + std::string("<a href=\"#") + id_of(campaign) + "-table-" +
               html::anchor(row.table) + "\">" + html::text(table_heading(row.table)) + "</a>";
     }
     rows.push_back({"<a href=\"#" + id_of(campaign) + "\">" + html::text(campaign.title) + "</a>", what,

@@ -26,7 +26,7 @@ std::string one_table(const std::vector<TableRow>& rows, const std::string& pref
     above = &row;
   }
   const std::string& name = rows.front().table;
-  std::string out = "<h3 id=\"" + prefix + "-" + html::anchor(name) + "\">" +
+  std::string out = "<h3 id=\"" + prefix + "-table-" + html::anchor(name) + "\">" +
                     html::text(table_heading(name)) + "</h3>\n" + html::table(columns, cells);
   if (reasons.texts().empty()) return out;
   out += "<ol class=\"reasons\">";

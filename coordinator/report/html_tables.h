@@ -10,7 +10,7 @@
 
 namespace fatmc {
 
-/// A heading (h3, with the id `prefix`-`table name`), the table and its reasons by number, for every table of `rows`.
+/// A heading (h3, with the id `prefix`-table-`table name`), the table and its reasons by number, for every table of `rows`.
 std::string html_tables(const std::vector<TableRow>& rows, const std::string& prefix);
 
 /// How many rows have which verdict.

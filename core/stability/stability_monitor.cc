@@ -58,9 +58,9 @@ MonitorEpoch StabilityMonitor::epoch() {
   references_.spectrum(reference_);
   lpm_.load_spectra(spectra_.leftCols(n_out_), spectra_.rightCols(grid_.n_in()));
   estimate_ = &lpm_.indirect(reference_);
-  EstimateStability judged =
+  const EstimateStability judged =
       judge_estimate(*estimate_, interpolation_bias(grid_, *estimate_), nominal_, options_, &scalings_);
-  return {measured_.count(), measured_.full(), judged.band, std::move(judged.lines)};
+  return {measured_.count(), measured_.full(), judged.band};
 }
 
 }  // namespace fatmc

@@ -25,7 +25,6 @@ struct MonitorEpoch {
   std::int64_t samples = 0;  ///< seen so far; the newest is samples - 1
   bool window_full = false;
   BandStability band;
-  std::vector<LineStability> lines;
 };
 
 class StabilityMonitor {

@@ -145,7 +145,11 @@ def refused(record, *words, model=aircraft):
 refused(variant("degrees", scaled(57.29578, "p", "q", "r", "r_p", "r_q", "r_r")), "57.3")
 refused(variant("bank", scaled(57.29578, "phi", "theta")), "phi", "57.3")
 refused(variant("clipped", clipped), "xi_c", "saturated")
-refused(variant("gainless", lambda row: None, lambda text: "\n".join(l for l in text.split("\n") if "gain" not in l)), "controller_gain")
-refused(variant("two", lambda row: None, lambda text: text.replace('output = ["p", "q", "r"]', 'output = ["p", "q"]')), "output", "three")
+def gainless(text):
+    return "\n".join(line for line in text.split("\n") if "gain" not in line)
+
+
+refused(variant("gainless", lambda row: None, gainless), "controller_gain")
+refused(variant("two", lambda row: None, lambda text: gainless(text).replace('output = ["p", "q", "r"]', 'output = ["p", "q"]')), "output", "three")
 refused(place("absent.csv"), "does not exist")
-refused(hidden, "kind", model=write("other_model.toml", 'kind = "state_space"\n'))
+refused(hidden, "kind", "state_space", model=write("other_model.toml", 'kind = "state_space"\n'))

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 """Section 3.4 again, by numpy.
 
-    estimators_campaign_reference.py FATMC
+    estimators_campaign_reference.py FATMC                  the comparison
+    estimators_campaign_reference.py FATMC --experiments    errors in steady state for other windows and another pitch zero:
+                                                            the reasons in campaigns/estimators/README.md
 
 Flies the small size of campaigns/estimators/spec.toml. Flights of three repetitions of two cells are replayed and all four
 estimates made anew: numpy's FFT, transients and local polynomials by lstsq, G0 from the matrices that `fatmc linearize` prints.
@@ -132,8 +134,44 @@ def worst_of_tables(fatmc, path):
     return worst, checked
 
 
+def steady_errors(fatmc, lowest, n_e=2, zero=None):
+    """Mean over 50 draws of phases of the relative error of |G|, direct and indirect, gain 0.5, without transient or noise.
+
+    `zero`: T_theta1 in rad/s, put in the place of the model's 0.2701."""
+    frequencies = np.arange(lowest, 21) / 20
+    g = pitch_response(fatmc, frequencies)
+    if zero is not None:
+        s = 2j * np.pi * frequencies
+        g = g * (s + zero) / (s + 0.27013)
+    random = np.random.default_rng(5)
+    direct, indirect = [], []
+    for _ in range(50):
+        r = np.exp(2j * np.pi * random.random(len(g)))
+        u = 0.5 * r / (1 + 0.5 * g)
+        y = g * u
+        direct.append(abs(local_polynomial(y, u, n_e) / g) - 1)
+        indirect.append(abs(local_polynomial(y, r, n_e) / local_polynomial(u, r, n_e) / g) - 1)
+    return np.mean(direct, axis=0), np.mean(indirect, axis=0)
+
+
+def experiments(fatmc):
+    def decibel(error):
+        return " ".join(f"{abs(20 * np.log10(1 + error[k])):.4f}" for k in (1, 5, 9, 13, 17))
+    for n_e in (2, 3, 4, 5):
+        direct, indirect = steady_errors(fatmc, 3, n_e)
+        print(f"n_E = {n_e}: error at 0.2 0.4 0.6 0.8 1.0 Hz, dB: direct {decibel(direct)}, indirect {decibel(indirect)}")
+    for zero in (0.078, 0.10, 0.165, 0.20, 0.27013, 0.34, 0.49):
+        at_02 = steady_errors(fatmc, 3, zero=zero)[0][1]
+        direct, indirect = (100 * e[1] for e in steady_errors(fatmc, 1, zero=zero))
+        print(f"T_theta1 {zero:.3f} rad/s: direct at 0.2 Hz {20 * np.log10(1 + at_02):.3f} dB; "
+              f"20 lines, at 0.10 Hz: direct {direct:.0f} %, indirect {indirect:.0f} %")
+    return 0
+
+
 def main():
     fatmc = sys.argv[1]
+    if "--experiments" in sys.argv[2:]:
+        return experiments(fatmc)
     with tempfile.TemporaryDirectory() as folder:
         path = f"{folder}/estimators.db"
         call(fatmc, "run", "campaigns/estimators/spec.toml", "--size", "small", "--db", path)

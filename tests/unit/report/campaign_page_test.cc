@@ -49,10 +49,10 @@ TEST(CampaignPage, IsWholeInItself) {
 
 TEST(CampaignPage, LinksEveryTableToItsPlace) {
   const std::string page = campaign_page("T", {campaign()});
-  for (const char* id : {"cover-age", "cover-age-5-5", "cover-age-fig-5-4"})
+  for (const char* id : {"cover-age", "cover-age-table-5-5", "cover-age-table-fig-5-4"})
     EXPECT_THAT(page, HasSubstr("href=\"#" + std::string(id) + "\""));
   EXPECT_THAT(page, HasSubstr("<h2 id=\"cover-age\">"));
-  EXPECT_THAT(page, HasSubstr("<h3 id=\"cover-age-5-5\">Table 5-5</h3>"));
+  EXPECT_THAT(page, HasSubstr("<h3 id=\"cover-age-table-5-5\">Table 5-5</h3>"));
 }
 
 TEST(CampaignPage, SaysOfAPartialCampaignThatItIsPartial) {
