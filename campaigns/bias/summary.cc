@@ -56,10 +56,9 @@ class CellTables {
 
   void add_table_4_3() {
     for (std::size_t r = 0; r < kResponses.size(); ++r) {
-      statistic(
-          "4-3", row_of(r), "mean magnitude error", "dB",
-          "servo rate limits: nil for a linear plant and at half the amplitude, which is not printed",
-          [&, r](Picks picks) { return mean_of(mean_error(runs_, r, picks).magnitude_db); });
+      statistic("4-3", row_of(r), "mean magnitude error", "dB",
+                "servo rate limits: nil for a linear plant and at half the amplitude, which is not printed",
+                [&, r](Picks picks) { return mean_of(mean_error(runs_, r, picks).magnitude_db); });
     }
   }
 

@@ -121,6 +121,9 @@ void add_artifacts(const ModelTable& table, const Selected& selected, const std:
   out.add(out.row("Section 4", name + ", all", quantity, "%", all, n_all));
   out.add(out.row("Section 4", name + ", best by d1", quantity, "%", best, n_best));
   if (n_candidates == 0) return;
+  std::uint64_t n_accepted = 0;
+  const double accepted = share(selected.accepted, n_accepted);
+  out.add(out.row("Section 4", name + ", norm below the limit", quantity, "%", accepted, n_accepted));
   TableRow row = out.row("Section 4", name + ", candidates", quantity, "%", candidates, n_candidates);
   if (candidates == 0.0 && best > 0.0) {
     row.verdict = std::isnan(row.published) ? "" : "exact";

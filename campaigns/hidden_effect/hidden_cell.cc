@@ -6,7 +6,8 @@
 namespace fatmc::hidden_effect {
 namespace {
 
-constexpr const char* kOwnKeys[] = {"hide", "size", "hidden", "taken_out", "nominal_error", "uncertain", "turbulence_error"};
+constexpr const char* kOwnKeys[] = {"hide",          "size",      "hidden",          "taken_out",
+                                    "nominal_error", "uncertain", "turbulence_error"};
 constexpr const char* kOwnTables[] = {"search"};
 
 /// Words must name something that can be hidden.

@@ -45,7 +45,8 @@ Drawn draw(const Tier& tier, RandomStream& random) {
   }
   for (Effect effect : variants_named(tier.uncertain)) {
     const EffectParameter& factor = effect.kind().parameters.front();
-    effect.values.front() = std::clamp(std::exp(tier.nominal_error * random.normal()), factor.low, factor.high);
+    effect.values.front() =
+        std::clamp(std::exp(tier.nominal_error * random.normal()), factor.low, factor.high);
     out.errors.push_back(std::move(effect));
   }
   if (tier.turbulence_error > 0.0) {

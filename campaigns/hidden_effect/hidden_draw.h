@@ -15,9 +15,9 @@ struct Tier {
   int effects = 1;                  ///< hidden at once
   double size = 1.0;                ///< share of a moderate size
   std::vector<std::string> hidden;  ///< ids or names of what may be hidden
-  double nominal_error = 0.0;       ///< standard deviation of the relative error of each derivative in `uncertain`
+  double nominal_error = 0.0;  ///< standard deviation of the relative error of each derivative in `uncertain`
   std::vector<std::string> uncertain;
-  double turbulence_error = 0.0;    ///< of the logarithm of the turbulence's level
+  double turbulence_error = 0.0;  ///< of the logarithm of the turbulence's level
 };
 
 struct Drawn {

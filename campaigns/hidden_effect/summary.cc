@@ -34,7 +34,8 @@ struct Count {
 
 /// What a pass over a cell's rows collects. A trial that diverged is in `diverged` alone: nothing was flown to diagnose.
 struct CellResults {
-  Count detected, named, right, both, any, holds, spurious, unknown, wrong, covered, diverged, right_of_detected;
+  Count detected, named, right, both, any, holds, spurious, unknown, wrong, covered, diverged,
+      right_of_detected;
   std::vector<double> class_size, error, gap;
   std::map<int, Count> right_by_effect;
   std::map<std::pair<int, int>, std::uint64_t> confusion;  ///< hidden, named (-1: none, -2: class or unknown)
@@ -67,7 +68,9 @@ void read_row(const TrialRow& row, CellResults& out) {
   if (const auto g = metric(row, kGapLeft)) out.gap.push_back(*g);
   if (out.hidden == 1) {
     out.right_by_effect[first].add(right >= 1.0);
-    const int named = verdict == 1 ? static_cast<int>(metric(row, kNamed[0]).value_or(-1.0)) : verdict == 0 ? -1 : -2;
+    const int named = verdict == 1   ? static_cast<int>(metric(row, kNamed[0]).value_or(-1.0))
+                      : verdict == 0 ? -1
+                                     : -2;
     ++out.confusion[{first, named}];
   }
 }
@@ -79,18 +82,22 @@ class Rows {
     if (count.n == 0) return;
     const Interval interval = proportion_interval(count.hits, count.n);
     const double value = 100.0 * static_cast<double>(count.hits) / static_cast<double>(count.n);
-    out_.push_back({kTable, cell_, quantity, "%", kNone, value, 100.0 * interval.low, 100.0 * interval.high, count.n, "", bar});
+    out_.push_back({kTable, cell_, quantity, "%", kNone, value, 100.0 * interval.low, 100.0 * interval.high,
+                    count.n, "", bar});
   }
-  void quantile(const std::string& quantity, const std::vector<double>& values, double p, const std::string& bar) {
+  void quantile(const std::string& quantity, const std::vector<double>& values, double p,
+                const std::string& bar) {
     if (values.empty()) return;
     const double value = EmpiricalCdf(values).quantile(p);
-    out_.push_back({kTable, cell_, quantity, "%", kNone, 100.0 * value, kNone, kNone, values.size(), "", bar});
+    out_.push_back(
+        {kTable, cell_, quantity, "%", kNone, 100.0 * value, kNone, kNone, values.size(), "", bar});
   }
   void mean(const std::string& quantity, const std::vector<double>& values, const std::string& bar) {
     if (values.empty()) return;
     const RunMean runs = mean_over_runs(values);
     const Interval interval = mean_interval(runs);
-    out_.push_back({kTable, cell_, quantity, "", kNone, runs.mean, interval.low, interval.high, runs.n, "", bar});
+    out_.push_back(
+        {kTable, cell_, quantity, "", kNone, runs.mean, interval.low, interval.high, runs.n, "", bar});
   }
 
  private:
@@ -131,7 +138,8 @@ void write_cell(const std::string& name, const CellResults& r, std::vector<Table
   rows.share("95 % interval covers", r.covered, "bar: 92-98 %");
   rows.quantile("gap left on an unseen record, median", r.gap, 0.5, "bar: at most 1 %");
   rows.quantile("gap left on an unseen record, 90 % quantile", r.gap, 0.9, "bar: at most 5 %");
-  for (const auto& [number, count] : r.right_by_effect) rows.share("right: " + effect_name(number), count, "bar: at least 90 %");
+  for (const auto& [number, count] : r.right_by_effect)
+    rows.share("right: " + effect_name(number), count, "bar: at least 90 %");
   for (const auto& [pair, n] : r.confusion) {
     if (pair.first == pair.second) continue;
     const Count count{n, r.right_by_effect.at(pair.first).n};

@@ -23,7 +23,8 @@ struct Search {
 
 double number_of(const Effect& effect) {
   static const std::vector<Effect> all = effect_variants();
-  const auto at = std::find_if(all.begin(), all.end(), [&](const Effect& e) { return e.name() == effect.name(); });
+  const auto at =
+      std::find_if(all.begin(), all.end(), [&](const Effect& e) { return e.name() == effect.name(); });
   return static_cast<double>(at - all.begin());
 }
 
@@ -59,7 +60,8 @@ class HiddenEffectTrials final : public PreparedCell {
 
  private:
   /// Features of a flight with what was drawn; its noise is that of the trial's own stream `purpose`.
-  std::optional<Eigen::VectorXd> features(const Drawn& drawn, TrialSeed seed, std::string_view purpose, TrialRow& row) const {
+  std::optional<Eigen::VectorXd> features(const Drawn& drawn, TrialSeed seed, std::string_view purpose,
+                                          TrialRow& row) const {
     const ModelSimulator& model = *search_->model;
     std::vector<Effect> all = drawn.errors;
     all.insert(all.end(), drawn.effects.begin(), drawn.effects.end());
@@ -83,10 +85,13 @@ class HiddenEffectTrials final : public PreparedCell {
   /// Whether the two count as one: equal names, or together in a class that the spec declares.
   [[nodiscard]] bool same(const Effect& a, const Effect& b) const {
     if (a.name() == b.name()) return true;
-    return std::any_of(cell_.classes.begin(), cell_.classes.end(), [&](const std::vector<std::string>& members) {
-      const auto in = [&](const Effect& e) { return std::find(members.begin(), members.end(), e.name()) != members.end(); };
-      return in(a) && in(b);
-    });
+    return std::any_of(cell_.classes.begin(), cell_.classes.end(),
+                       [&](const std::vector<std::string>& members) {
+                         const auto in = [&](const Effect& e) {
+                           return std::find(members.begin(), members.end(), e.name()) != members.end();
+                         };
+                         return in(a) && in(b);
+                       });
   }
 
   void score(const Drawn& drawn, const Diagnosis& d, TrialRow& row) const {
@@ -112,10 +117,13 @@ class HiddenEffectTrials final : public PreparedCell {
     for (const FoundEffect& found : d.effects) {
       if (found.effect.name() != first.name() || d.verdict == Verdict::unknown) continue;
       const EffectParameter& p = first.kind().parameters.front();
-      const double truth = to_natural(p, first.values.front()), size = std::abs(truth - to_natural(p, p.nominal));
+      const double truth = to_natural(p, first.values.front()),
+                   size = std::abs(truth - to_natural(p, p.nominal));
       const ParameterEstimate& estimate = found.parameters.front();
       row.metrics.emplace_back(kParameterError, std::abs(to_natural(p, estimate.value) - truth) / size);
-      row.metrics.emplace_back(kCovered, estimate.low <= first.values.front() && first.values.front() <= estimate.high ? 1.0 : 0.0);
+      row.metrics.emplace_back(
+          kCovered,
+          estimate.low <= first.values.front() && first.values.front() <= estimate.high ? 1.0 : 0.0);
     }
   }
 
@@ -124,8 +132,10 @@ class HiddenEffectTrials final : public PreparedCell {
     const double floor = unseen.thresholds().energy_mean, before = unseen.discrepancy().squaredNorm();
     if (d.effects.empty() || before < unseen.thresholds().energy) return;
     const std::vector<std::vector<Effect>> sets = {d.effect_list()};
-    const double after = (unseen.discrepancy() - unseen.changes(sets, ComparisonBasis::kBaseline).col(0)).squaredNorm();
-    if (std::isfinite(after)) row.metrics.emplace_back(kGapLeft, std::max(0.0, (after - floor) / (before - floor)));
+    const double after =
+        (unseen.discrepancy() - unseen.changes(sets, ComparisonBasis::kBaseline).col(0)).squaredNorm();
+    if (std::isfinite(after))
+      row.metrics.emplace_back(kGapLeft, std::max(0.0, (after - floor) / (before - floor)));
   }
 
   HiddenCell cell_;
@@ -137,7 +147,8 @@ class HiddenEffectTrials final : public PreparedCell {
 Result<std::shared_ptr<const Search>> make_search(const HiddenCell& cell, const CampaignSpec& spec) {
   const Excitation& excitation = cell.flown.experiment.excitation;
   const FlightSetup& setup = cell.flown.experiment.flight;
-  const PeriodicExperiment experiment{excitation.lines, excitation.period_samples, excitation.periods, setup.rate_hz};
+  const PeriodicExperiment experiment{excitation.lines, excitation.period_samples, excitation.periods,
+                                      setup.rate_hz};
   auto layout = FeatureLayout::create(experiment, true, true, setup.closed_loop);
   if (!layout) return fail(layout.error());
   auto grid = LpmGrid::create(experiment, {}, 3);
@@ -146,7 +157,8 @@ Result<std::shared_ptr<const Search>> make_search(const HiddenCell& cell, const 
   const TrialSeed phases{spec.seed, name_hash("hidden_effect"), name_hash("excitation"), 0};
   auto out = std::make_shared<Search>();
   out->model = std::make_unique<ModelSimulator>(cell.flown.model.aircraft, setup, cell.flown.model.effects,
-                                                reference_signal(cell.flown.experiment, phases), FeatureExtractor(*layout, setup.gain));
+                                                reference_signal(cell.flown.experiment, phases),
+                                                FeatureExtractor(*layout, setup.gain));
   BasisOptions options;
   options.flights = cell.null_flights;
   if (cell.tier.turbulence_error > 0.0) {

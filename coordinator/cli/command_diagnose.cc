@@ -79,9 +79,10 @@ void print_summary(const DiagnosisPage& page) {
   const std::size_t most = 5;
   for (std::size_t i = 0; i < page.where.size() && i < most; ++i) {
     const Place& p = page.where[i];
-    std::printf("  %s / %s, %s to %s Hz: %s dB, %s sigma\n", p.output.c_str(), p.input.c_str(),
+    std::printf("  %s / %s, %s to %s Hz: %s dB, %s deg, %s sigma\n", p.output.c_str(), p.input.c_str(),
                 significant(p.low_hz, 3).c_str(), significant(p.high_hz, 3).c_str(),
-                significant(p.decibel, 3).c_str(), significant(p.sigma, 3).c_str());
+                significant(p.decibel, 3).c_str(), significant(p.degrees, 3).c_str(),
+                significant(p.sigma, 3).c_str());
   }
   if (page.where.size() > most)
     std::printf("  and %zu places more, in the report\n", page.where.size() - most);
@@ -98,8 +99,10 @@ Exit diagnose_records(const Options& options) {
     auto done = diagnose_response(options.model, options.records, options.holdout);
     if (!done) return report(done.error());
     fs::create_directories(options.output);
-    for (const auto& [file, text] : done->files) write_file_atomically((fs::path(options.output) / file).string(), text);
-    std::printf("%swritten: %s and what stands beside it\n", done->summary.c_str(), (fs::path(options.output) / "diagnosis.json").c_str());
+    for (const auto& [file, text] : done->files)
+      write_file_atomically((fs::path(options.output) / file).string(), text);
+    std::printf("%swritten: %s and what stands beside it\n", done->summary.c_str(),
+                (fs::path(options.output) / "diagnosis.json").c_str());
     return Exit::done;
   }
   DiagnosisRunOptions run = options.run;

@@ -76,6 +76,7 @@ std::string diagnosis_json(const DiagnosisPage& page) {
                             {"low_hz", p.low_hz},
                             {"high_hz", p.high_hz},
                             {"decibel", p.decibel},
+                            {"degrees", p.degrees},
                             {"sigma", p.sigma}});
   }
   out["gap"] = {{"training", gap_json(d.training)}, {"holdout", gap_json(d.holdout)}};

@@ -29,7 +29,7 @@ struct MeasuredGap {
 struct Place {
   std::string output, input;  ///< input: of the response, or "mean", "noise", "distortion", ...
   double low_hz = 0.0, high_hz = 0.0;
-  double decibel = 0.0, sigma = 0.0;
+  double decibel = 0.0, degrees = 0.0, sigma = 0.0;
 };
 
 /// All that the files say.

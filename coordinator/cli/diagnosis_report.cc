@@ -101,10 +101,10 @@ std::string gap_table(const DiagnosisPage& page) {
              "quoted from MIL-HDBK-1797 from memory (unverified).");
 }
 
-plot::Figure map_figure(const MapFigure& map) {
+plot::Figure map_figure(const std::vector<MapEntry>& map) {
   plot::Figure out;
   out.title = "Where record and model disagree";
-  out.note = "above the dashed line: largest of the whole map in less than 1 % of flights of the model";
+  out.note = "1 % of the model's own flights pass the limit anywhere on the map";
   out.columns = 3;
   out.panel_width = 300.0;
   out.panel_height = 150.0;
@@ -116,15 +116,17 @@ plot::Figure map_figure(const MapFigure& map) {
       panel.x.label = "Hz";
       panel.x.scale = plot::Scale::logarithmic;
       panel.y.label = "sigma";
-      plot::Line line;
-      line.hue = plot::Hue::orange;
-      for (const MapEntry& e : map.entries) {
+      plot::Line line{"record", {}, {}, plot::Hue::orange, plot::Dash::solid};
+      plot::Line limit{"limit of chance", {}, {}, plot::Hue::grey, plot::Dash::dashed};
+      for (const MapEntry& e : map) {
         if (e.cell.output != i || e.cell.input != j) continue;
         line.x.insert(line.x.end(), {e.low_hz, e.high_hz});
         line.y.insert(line.y.end(), {e.sigma, e.sigma});
+        limit.y.insert(limit.y.end(), {e.limit, e.limit});
       }
+      limit.x = line.x;
+      panel.marks.emplace_back(std::move(limit));
       panel.marks.emplace_back(std::move(line));
-      panel.marks.emplace_back(plot::Rule{"", map.threshold});
       out.panels.push_back(std::move(panel));
     }
   }
@@ -174,17 +176,23 @@ std::string places_table(const DiagnosisPage& page) {
   std::vector<std::vector<std::string>> rows;
   for (const Place& p : page.where) {
     rows.push_back({html::text(p.output), html::text(p.input), number(p.low_hz), number(p.high_hz),
-                    number(p.decibel, 3), number(p.sigma, 3)});
+                    number(p.decibel, 3), number(p.degrees, 3), number(p.sigma, 3)});
   }
   if (rows.empty()) return paragraph("No element, band, mean or spectrum differs by more than chance.");
-  return html::table(
-      {{"output"}, {"input"}, {"from Hz", true}, {"to Hz", true}, {"dB", true}, {"sigma", true}}, rows);
+  return html::table({{"output"},
+                      {"input"},
+                      {"from Hz", true},
+                      {"to Hz", true},
+                      {"dB", true},
+                      {"deg", true},
+                      {"sigma", true}},
+                     rows);
 }
 
 }  // namespace
 
 std::string diagnosis_html(const DiagnosisPage& page, const std::vector<ResponseOverlay>& overlays,
-                           const MapFigure& map) {
+                           const std::vector<MapEntry>& map) {
   std::string body = "<header><h1>Diagnosis of " + html::text(page.model->model.aircraft.name) + "</h1>\n" +
                      paragraph(headline(page)) + "</header>\n<main>\n";
   const Evidence& e = page.diagnosis.evidence;
@@ -197,7 +205,7 @@ std::string diagnosis_html(const DiagnosisPage& page, const std::vector<Response
   for (const std::string& note : page.diagnosis.notes) body += paragraph(note);
   body += effects_table(page) + gap_table(page) + "<h2>Where</h2>\n" +
           html::figure(map_figure(map), "map", "Map",
-                       "Deviations of each element and band of the frequency response matrix, "
+                       "Rms deviation of each element and band of the frequency response matrix, "
                        "of the first record, in standard deviations of flights of the model.") +
           places_table(page);
   int n = 0;

@@ -17,12 +17,7 @@ struct ResponseOverlay {
   Eigen::VectorXd deviation;  ///< of an estimate of the model's flights, |G|
 };
 
-struct MapFigure {
-  std::vector<MapEntry> entries;
-  double threshold = 0.0;
-};
-
 std::string diagnosis_html(const DiagnosisPage& page, const std::vector<ResponseOverlay>& overlays,
-                           const MapFigure& map);
+                           const std::vector<MapEntry>& map);
 
 }  // namespace fatmc::cli

@@ -97,14 +97,14 @@ Result<Stack> prepare_stack(const std::vector<DiagnosedRecord*>& records, const 
 }
 
 /// Places beyond chance, the largest sigma first: cells of the map, then means, spectra and the rest.
-std::vector<Place> places_of(const Comparison& comparison, const std::vector<MapEntry>& map,
-                             double threshold) {
+std::vector<Place> places_of(const Comparison& comparison, const std::vector<MapEntry>& map) {
   constexpr const char* kInputs[] = {"xi_c", "eta_c", "zeta_c"};
   constexpr const char* kOutputs[] = {"p", "q", "r"};
   std::vector<Place> out;
   for (const MapEntry& e : map) {
-    if (e.sigma <= threshold) continue;
-    out.push_back({kOutputs[e.cell.output], kInputs[e.cell.input], e.low_hz, e.high_hz, e.decibel, e.sigma});
+    if (!e.significant()) continue;
+    out.push_back(
+        {kOutputs[e.cell.output], kInputs[e.cell.input], e.low_hz, e.high_hz, e.decibel, e.degrees, e.sigma});
   }
   const ComparisonBasis& basis = *comparison.records().front().basis;
   const Eigen::VectorXd z = comparison.discrepancy().head(basis.layout.size);
@@ -120,7 +120,7 @@ std::vector<Place> places_of(const Comparison& comparison, const std::vector<Map
                        group.kind == FeatureKind::peak;
     const double decibel = power ? 10.0 / std::log(10.0) * raw[group.rows.front()] : 0.0;
     out.push_back({basis.layout.channel_name(group.channel), std::string(name(group.kind)), group.low_hz,
-                   group.high_hz, decibel, value});
+                   group.high_hz, decibel, 0.0, value});
   }
   std::stable_sort(out.begin(), out.end(), [](const Place& a, const Place& b) { return a.sigma > b.sigma; });
   return out;
@@ -220,10 +220,9 @@ Result<DiagnosisRun> run_diagnosis(const std::string& model_path, const std::vec
     if (round == 0) {
       FastLpm estimator(stack->prepared.front()->grid, 3);
       const ResponseMap& map = stack->bases.front()->map;
-      out.map = {
-          map.read(response_vector(estimator, training.front()->record, training.front()->setup.closed_loop)),
-          map.threshold()};
-      page.where = places_of(comparison, out.map.entries, map.threshold());
+      out.map = map.read(
+          response_vector(estimator, training.front()->record, training.front()->setup.closed_loop));
+      page.where = places_of(comparison, out.map);
       page.thresholds = comparison.thresholds();
       page.diagnosis = diagnosis;
       for (const DiagnosedRecord* r : page.records) {

@@ -23,7 +23,7 @@ struct DiagnosisRun {
   std::vector<std::unique_ptr<DiagnosedRecord>> records;
   DiagnosisPage page;
   std::vector<ResponseOverlay> overlays;
-  MapFigure map;
+  std::vector<MapEntry> map;
 };
 
 Result<DiagnosisRun> run_diagnosis(const std::string& model, const std::vector<std::string>& records,

@@ -1,7 +1,6 @@
 #include "coordinator/cli/response_diagnosis.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -25,6 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+constexpr double kCoherentExcess = 2.0;  // error over its incoherent part, from which on something is missing
+constexpr const char* kSeparatedBy = "a record in which the inputs have other phases to each other";
 constexpr double kIncoherent = 0.2;  // of an output's energy: more than this is no answer of a linear model
 
 struct ResponseModel {
@@ -221,12 +222,6 @@ std::string repaired_csv(const ResponseModel& model, const Spectra& s, const Res
   return out;
 }
 
-/// One-sided normal deviation with the tail p, 38 at most (where p is 0 in doubles).
-double sigma_of(double p) {
-  if (p < 1e-300) return 38.0;
-  return boost::math::quantile(boost::math::complement(boost::math::normal(), p));
-}
-
 }  // namespace
 
 std::string response_kind(const std::string& model) {
@@ -248,9 +243,7 @@ Result<ResponseDiagnosisFiles> diagnose_response(const std::string& path,
     return fail(Error{path, 0, "--holdout", "a recorded output says nothing about another record"});
   auto training = spectra_of(records.front(), *model);
   if (!training) return fail(training.error());
-  ResidualOptions options;
-  const int unknowns = (options.order + 1) * (static_cast<int>(training->inputs.size()) + 1);
-  options.window = std::max(options.window, 2 * unknowns + 6);
+  const ResidualOptions options;
   auto fit = fit_residual_response(training->frequency_hz, training->error, training->output, training->input,
                                    options);
   if (!fit) return fail(Error{records.front(), 0, "", fit.error().message});
@@ -281,9 +274,33 @@ Result<ResponseDiagnosisFiles> diagnose_response(const std::string& path,
     }
   }
 
-  const bool nothing = fit->elements.empty() && incoherent.empty();
+  // Inputs that are nearly copies of each other within a window leave the error explained by all of them and by none alone, or
+  // by large responses that cancel: such elements make things worse where they are applied.
+  const bool worse = own.after > own.before || held.after > held.before;
+  std::vector<std::string> members;
+  for (Eigen::Index i = 0; i < outputs; ++i) {
+    const bool found = !worse && std::any_of(fit->elements.begin(), fit->elements.end(),
+                                             [&](const auto& e) { return e.first == i; });
+    if (found || fit->before[i] < kCoherentExcess * fit->floor[i]) continue;
+    const std::string out = training->outputs[static_cast<std::size_t>(i)];
+    for (std::size_t j = 0; j < training->inputs.size(); ++j) {
+      const bool absent = model->diagonal && static_cast<std::size_t>(i) != j;
+      members.push_back((absent ? "cross_coupling:output=" : "element_error:output=") + out +
+                        ",input=" + training->inputs[j]);
+    }
+  }
+  if (worse) {
+    fit->elements.clear();
+    fit->response.setZero();
+    own.after = own.before;
+    held.after = held.before;
+  }
+  const bool nothing = fit->elements.empty() && incoherent.empty() && members.empty();
   const bool repaired = !model->recorded && !fit->elements.empty();
-  const std::string verdict = nothing ? "none" : repaired && incoherent.empty() ? "named" : "unknown";
+  const std::string verdict = nothing                                  ? "none"
+                              : !incoherent.empty() || model->recorded ? "unknown"
+                              : !members.empty()                       ? "class"
+                                                                       : "named";
   Json json;
   json["verdict"] = verdict;
   json["effects"] = Json::array();
@@ -306,23 +323,25 @@ Result<ResponseDiagnosisFiles> diagnose_response(const std::string& path,
     patch += "\n[[effect]]\nid = \"" + id + "\"\noutput = \"" + out + "\"\ninput = \"" + in +
              "\"  # its response: frm.csv\n";
   }
-  json["class"] = Json::array();
-  json["separate_by"] = "";
+  json["class"] = members;
+  json["separate_by"] = members.empty() ? "" : kSeparatedBy;
+  if (!members.empty())
+    list += "  these records cannot separate: " + join(members) + "\n  separated by: " + kSeparatedBy + "\n";
   json["where"] = Json::array();
   std::vector<std::vector<std::string>> rows;
   for (const ResidualPlace& p : fit->places) {
     const std::string out = training->outputs[static_cast<std::size_t>(p.output)],
                       in = training->inputs[static_cast<std::size_t>(p.input)];
-    const double decibel = 10.0 * std::log10(std::max(1e-6, 1.0 - p.share)), sigma = sigma_of(p.p);
+    const double decibel = 10.0 * std::log10(std::max(1e-6, 1.0 - p.share));
     json["where"].push_back({{"output", out},
                              {"input", in},
                              {"low_hz", p.low_hz},
                              {"high_hz", p.high_hz},
                              {"decibel", decibel},
-                             {"sigma", sigma}});
+                             {"sigma", p.sigma}});
     rows.push_back({html::text(out), html::text(in), html::text(significant(p.low_hz, 4)),
                     html::text(significant(p.high_hz, 4)), html::text(significant(100.0 * p.share, 3)),
-                    html::text(significant(sigma, 3))});
+                    html::text(significant(p.sigma, 3))});
   }
   json["gap"] = {{"training", gap_json(own)}, {"holdout", holdout.empty() ? Json(nullptr) : gap_json(held)}};
   json["incoherent"] = Json::array();

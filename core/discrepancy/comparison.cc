@@ -19,6 +19,23 @@ bool held_out(const FeatureBlock& block) {
   return block.kind == FeatureKind::line && block.line % kHeldBack == 2;
 }
 
+/// With an effect some flights may leave the model where the record's did not: the mean change over those that do not, NaN where
+/// none is left.
+Vector mean_of_survivors(const ModelSimulator& model, const ComparisonBasis& basis,
+                         const std::vector<Effect>& effects, int flights, int threads) {
+  const std::vector<std::vector<Effect>> sets = {effects};
+  Vector sum = Vector::Zero(basis.layout.size);
+  int count = 0;
+  for (int n = 0; n < flights; ++n) {
+    const EffectFlights one = model.fly(sets, n, 1, threads).front();
+    if (!one.usable()) continue;
+    sum += one.features.col(0) - basis.baseline.col(n);
+    ++count;
+  }
+  if (count == 0) return Vector::Constant(basis.layout.size, std::numeric_limits<double>::quiet_NaN());
+  return sum / count;
+}
+
 /// Flights of the records combined: the n-th of each, which are independent where the references differ. Records that share
 /// a reference share a basis and its flights; they are shifted against each other.
 Thresholds combine(const std::vector<ComparedRecord>& records, const Matrix& atoms,
@@ -98,12 +115,17 @@ Matrix Comparison::changes(std::span<const std::vector<Effect>> sets, int flight
   std::vector<bool> failed(sets.size(), false);
   for (std::size_t i = 0; i < records_.size(); ++i) {
     const ComparisonBasis& basis = *records_[i].basis;
-    const std::vector<EffectFlights> flown = records_[i].model->fly(sets, 0, flights, threads_);
+    const ModelSimulator& model = *records_[i].model;
+    const std::vector<EffectFlights> flown = model.fly(sets, 0, flights, threads_);
     Matrix difference(basis.layout.size, out.cols());
     for (std::size_t s = 0; s < sets.size(); ++s) {
-      failed[s] = failed[s] || !flown[s].usable();
-      difference.col(static_cast<Eigen::Index>(s)) =
-          (flown[s].features - basis.baseline.leftCols(flights)).rowwise().mean();
+      const auto at = static_cast<Eigen::Index>(s);
+      if (flown[s].usable()) {
+        difference.col(at) = (flown[s].features - basis.baseline.leftCols(flights)).rowwise().mean();
+      } else {
+        difference.col(at) = mean_of_survivors(model, basis, sets[s], flights, threads_);
+        failed[s] = failed[s] || !difference.col(at).allFinite();
+      }
     }
     out.middleRows(first_[i], basis.layout.size) = basis.law.whiten(basis.layout, difference);
   }

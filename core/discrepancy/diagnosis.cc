@@ -42,6 +42,31 @@ std::vector<FoundEffect> found_effects(const EffectSelection& selection, const E
   return out;
 }
 
+/// What the largest GLR of a further signature exceeds by chance in 1 % of records where the effects found so far shape the
+/// noise: from flights of the model with them. An effect that lets the aircraft bank further, say, scatters means and trims
+/// more than the model's own law allows, and would be followed by a bias that is none. 0 where a flight leaves the model.
+double scan_limit(const Comparison& comparison, const EffectFit& fit) {
+  constexpr int kFlights = 60;
+  const std::vector<std::vector<Effect>> sets = {fit.effects};
+  Eigen::MatrixXd z(comparison.size(), kFlights);
+  for (std::size_t i = 0; i < comparison.records().size(); ++i) {
+    const ComparedRecord& record = comparison.records()[i];
+    const EffectFlights flown = record.model->fly(sets, ComparisonBasis::kBaseline, kFlights, 1).front();
+    if (!flown.usable()) return 0.0;
+    const Eigen::VectorXd mean = flown.features.rowwise().mean();
+    z.middleRows(comparison.first_row(i), record.basis->layout.size) =
+        record.basis->law.whiten(record.basis->layout, flown.features.colwise() - mean);
+  }
+  std::vector<double> largest;
+  for (int n = 0; n < kFlights; ++n) {
+    double most = 0.0;
+    for (const ScanHit& hit : scan_signatures(z.col(n), comparison.atoms(), fit.jacobian))
+      most = std::max(most, hit.glr);
+    largest.push_back(most);
+  }
+  return tail_quantile(std::move(largest), 0.01);
+}
+
 /// Rivals of the last effect that explain the records as well.
 std::vector<EffectFit> equals_of(const EffectSelection& selection, const EffectFit& best,
                                  std::vector<EffectFit> rivals, int flights) {
@@ -130,10 +155,14 @@ Diagnosis diagnose(const Comparison& comparison, const Comparison* holdout, cons
     if (hits.empty() || hits.front().glr < 0.5 * limit.scan) break;
     std::vector<EffectFit> next = selection.extended(fit);
     if (next.empty() || !selection.accepted(fit, next.front(), next.front().effects.back())) break;
+    if (!fit.effects.empty() && fit.cost - next.front().cost < scan_limit(comparison, fit)) break;
     fit = selection.exchanged(selection.pruned(next.front()));
     if (fit.effects.size() == 1) rivals = std::move(next);
   }
-  if (!fit.effects.empty()) fit = selection.refitted(fit.effects, options.final_flights);
+  if (!fit.effects.empty()) {
+    EffectFit refined = selection.refitted(fit.effects, options.final_flights);
+    if (refined.usable()) fit = std::move(refined);
+  }
 
   const bool adequate = selection.adequate(fit);
   if (!fit.effects.empty()) out.effects = found_effects(selection, fit, options.screening_flights);

@@ -35,7 +35,8 @@ std::vector<std::vector<double>> shape_grid(const EffectKind& kind, const std::v
 }
 
 /// Sizes of one strength. What a limit does depends on how far it is met: three of them, and a mild one beyond.
-std::vector<double> strengths(const EffectParameter& parameter) {
+/// Resonances are linear in their strength and need many places instead: one size of them is enough.
+std::vector<double> strengths(const EffectParameter& parameter, bool one_size) {
   std::vector<double> wanted;
   if (is_limit(parameter)) {
     for (const double place : {0.0, 0.5, 1.0, 1.5}) wanted.push_back(parameter.moderate(place, false));
@@ -43,7 +44,7 @@ std::vector<double> strengths(const EffectParameter& parameter) {
     const double least = place_of_least(parameter);
     for (const bool mirrored : {false, true}) {
       if (mirrored && parameter.mirror == EffectParameter::Mirror::none) continue;
-      wanted.push_back(parameter.toward(parameter.moderate(least, mirrored), kSmall));
+      if (!one_size) wanted.push_back(parameter.toward(parameter.moderate(least, mirrored), kSmall));
       wanted.push_back(parameter.moderate(1.0 - least, mirrored));
     }
   }
@@ -67,10 +68,12 @@ std::vector<Atom> signature_effects(const std::vector<Effect>& variants) {
   std::vector<Atom> out;
   for (std::size_t v = 0; v < variants.size(); ++v) {
     const EffectKind& kind = variants[v].kind();
+    const bool resonance = !std::all_of(kind.parameters.begin(), kind.parameters.end(),
+                                        [](const EffectParameter& p) { return p.strength; });
     for (const std::vector<double>& shaped : shape_grid(kind, variants[v].values)) {
       for (std::size_t p = 0; p < kind.parameters.size(); ++p) {
         if (!kind.parameters[p].strength) continue;
-        for (const double value : strengths(kind.parameters[p])) {
+        for (const double value : strengths(kind.parameters[p], resonance)) {
           Atom atom{variants[v], static_cast<int>(v)};
           atom.effect.values = shaped;
           atom.effect.values[p] = value;

@@ -2,18 +2,23 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/beta.hpp>
+#include <boost/math/distributions/gamma.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/special_functions/digamma.hpp>
+#include <boost/math/special_functions/trigamma.hpp>
 #include <cmath>
 
 namespace fatmc {
 namespace {
 
+namespace math = boost::math;
 using Matrix = Eigen::MatrixXcd;
 using Vector = Eigen::VectorXcd;
 
 /// Polynomials of one window: bins x (order + 1), in the scaled distance from its middle.
-Eigen::MatrixXd powers(int bins, int order) {
-  Eigen::MatrixXd out(bins, order + 1);
+Matrix powers(int bins, int order) {
+  Matrix out(bins, order + 1);
   for (int i = 0; i < bins; ++i) {
     const double x = 2.0 * i / (bins - 1.0) - 1.0;
     double power = 1.0;
@@ -23,13 +28,12 @@ Eigen::MatrixXd powers(int bins, int order) {
 }
 
 /// Columns for the transient and the inputs of `set`.
-Matrix regressor(const Eigen::MatrixXd& polynomial, const Matrix& input, const std::vector<int>& set) {
+Matrix regressor(const Matrix& polynomial, const Matrix& input, const std::vector<int>& set) {
   const Eigen::Index r = polynomial.cols();
-  Matrix out(polynomial.rows(), r * static_cast<Eigen::Index>(set.size() + 1));
-  out.leftCols(r) = polynomial.cast<std::complex<double>>();
+  Matrix out(polynomial.rows(), r * static_cast<Eigen::Index>(set.size()) + 1);
+  out.col(0).setOnes();
   for (std::size_t s = 0; s < set.size(); ++s) {
-    out.middleCols(r * static_cast<Eigen::Index>(s + 1), r) =
-        input.col(set[s]).asDiagonal() * polynomial.cast<std::complex<double>>();
+    out.middleCols(r * static_cast<Eigen::Index>(s) + 1, r) = input.col(set[s]).asDiagonal() * polynomial;
   }
   return out;
 }
@@ -56,111 +60,165 @@ struct Window {
 std::vector<Window> cut(Eigen::Index bins, int window) {
   std::vector<Window> out;
   const Eigen::Index count = bins / window;
-  for (Eigen::Index w = 0; w < count; ++w)
+  for (Eigen::Index w = 0; w < count; ++w) {
     out.push_back({bins * w / count, static_cast<int>(bins * (w + 1) / count - bins * w / count)});
+  }
   return out;
 }
 
-/// Residual of an output over all windows with the inputs of `set`.
-double residual_with(const std::vector<Window>& windows, const Matrix& error, const Matrix& input, int output,
-                     const std::vector<int>& set, int order) {
-  double sum = 0.0;
-  for (const Window& w : windows) {
-    const Matrix columns = regressor(powers(w.bins, order), input.middleRows(w.first, w.bins), set);
-    sum += fit(columns, error.col(output).segment(w.first, w.bins)).residual;
+std::vector<int> all_but(int count, int left_out) {
+  std::vector<int> out;
+  for (int j = 0; j < count; ++j) {
+    if (j != left_out) out.push_back(j);
   }
-  return sum;
+  return out;
 }
+
+/// Normal deviation with the tail that a sum of -log b has beyond `sum`. For whole R the -log b are sums of exponential variables,
+/// so that their sum is close to the gamma law of its mean and variance; few windows are too skewed for a normal one. 37 at
+/// most, where the tail leaves the range of a double.
+double sigma_of(double sum, double mean, double variance) {
+  const math::gamma_distribution<> law(mean * mean / variance, variance / mean);
+  const double tail = math::cdf(math::complement(law, std::max(sum, 1e-12)));
+  if (tail < 1e-300) return 37.0;
+  return tail < 1.0 ? math::quantile(math::complement(math::normal(), tail)) : -37.0;
+}
+
+/// The work on one output.
+class OutputError {
+ public:
+  OutputError(const std::vector<double>& frequency_hz, const std::vector<Window>& windows,
+              const Matrix& input, Vector error, const ResidualOptions& options)
+      : frequency_hz_(frequency_hz),
+        windows_(windows),
+        input_(input),
+        error_(std::move(error)),
+        options_(options),
+        inputs_(static_cast<int>(input.cols())),
+        unknowns_((options.order + 1) * inputs_ + 1) {
+    for (const Window& w : windows_) {
+      full_.push_back(fitted(w, all_but(inputs_, -1)).residual);
+      floor_ += full_.back() * w.bins / (w.bins - unknowns_);
+    }
+  }
+  [[nodiscard]] double floor() const { return floor_; }
+
+  /// What element j explains; bands beyond the limit go to `places`, windows in which it acts are remembered.
+  double test(int output, int j, int bands, double limit, std::vector<ResidualPlace>& places,
+              bool& significant) {
+    acts_.resize(static_cast<std::size_t>(inputs_), std::vector<char>(windows_.size(), 0));
+    double explained = 0.0;
+    for (int b = 0; b < bands; ++b) {
+      const std::size_t first =
+          windows_.size() * static_cast<std::size_t>(b) / static_cast<std::size_t>(bands);
+      const std::size_t last =
+          windows_.size() * static_cast<std::size_t>(b + 1) / static_cast<std::size_t>(bands);
+      double sum = 0.0, mean = 0.0, variance = 0.0, share = 0.0, energy = 0.0;
+      for (std::size_t w = first; w < last; ++w) {
+        const double without = fitted(windows_[w], all_but(inputs_, j)).residual;
+        const double freedom = windows_[w].bins - unknowns_, more = freedom + options_.order + 1;
+        const double ratio = std::clamp(full_[w] / std::max(without, 1e-300), 1e-300, 1.0);
+        sum -= std::log(ratio);
+        mean += math::digamma(more) - math::digamma(freedom);
+        variance += math::trigamma(freedom) - math::trigamma(more);
+        share += without - full_[w];
+        energy += error_.segment(windows_[w].first, windows_[w].bins).squaredNorm();
+        const math::beta_distribution<> law(freedom, options_.order + 1.0);
+        acts_[static_cast<std::size_t>(j)][w] = math::cdf(law, ratio) < options_.window_level ? 1 : 0;
+      }
+      explained += share;
+      const double sigma = sigma_of(sum, mean, variance);
+      if (sigma <= limit) continue;
+      significant = true;
+      const Window& end = windows_[last - 1];
+      places.push_back({output, j, frequency_hz_[static_cast<std::size_t>(windows_[first].first)],
+                        frequency_hz_[static_cast<std::size_t>(end.first + end.bins - 1)], sigma,
+                        share / energy});
+    }
+    return explained;
+  }
+
+  /// Responses of the elements `taken`, fitted together in the windows where they act, into their columns of
+  /// `response`; the energy that they leave.
+  double repair(int output, int outputs, const std::vector<int>& taken, Matrix& response) const {
+    Vector rest = error_;
+    for (std::size_t w = 0; w < windows_.size(); ++w) {
+      std::vector<int> set;
+      for (const int j : taken) {
+        if (acts_[static_cast<std::size_t>(j)][w] != 0) set.push_back(j);
+      }
+      if (set.empty()) continue;
+      const Window& at = windows_[w];
+      const Matrix polynomial = powers(at.bins, options_.order);
+      const Fit found = fitted(at, set);
+      const Eigen::Index r = polynomial.cols();
+      for (std::size_t s = 0; s < set.size(); ++s) {
+        const Vector h = polynomial * found.coefficients.segment(r * static_cast<Eigen::Index>(s) + 1, r);
+        response.col(static_cast<Eigen::Index>(set[s]) * outputs + output).segment(at.first, at.bins) = h;
+        rest.segment(at.first, at.bins) -= h.cwiseProduct(input_.col(set[s]).segment(at.first, at.bins));
+      }
+    }
+    return rest.squaredNorm();
+  }
+
+ private:
+  [[nodiscard]] Fit fitted(const Window& w, const std::vector<int>& set) const {
+    return fit(regressor(powers(w.bins, options_.order), input_.middleRows(w.first, w.bins), set),
+               error_.segment(w.first, w.bins));
+  }
+
+  const std::vector<double>& frequency_hz_;
+  const std::vector<Window>& windows_;
+  const Matrix& input_;
+  Vector error_;
+  const ResidualOptions& options_;
+  int inputs_, unknowns_;
+  std::vector<double> full_;
+  double floor_ = 0.0;
+  std::vector<std::vector<char>> acts_;
+};
 
 }  // namespace
 
 Result<ResidualResponse> fit_residual_response(const std::vector<double>& frequency_hz,
                                                const Eigen::Ref<const Matrix>& error,
                                                const Eigen::Ref<const Matrix>& output,
-                                               const Eigen::Ref<const Matrix>& input,
+                                               const Eigen::Ref<const Matrix>& input_bins,
                                                const ResidualOptions& options) {
+  const Matrix input = input_bins;
   const int inputs = static_cast<int>(input.cols()), outputs = static_cast<int>(error.cols());
-  const int unknowns = (options.order + 1) * (inputs + 1);
-  if (options.window < 2 * unknowns) {
-    return fail("a window of " + std::to_string(options.window) + " bins has too few for " +
-                std::to_string(unknowns) + " unknowns");
+  const int bins = (options.order + 1) * inputs + 1 + options.spare;
+  if (error.rows() < 2 * bins) {
+    return fail("the band holds " + std::to_string(error.rows()) + " bins, write one with two windows of " +
+                std::to_string(bins) + " at least");
   }
-  if (error.rows() < 2 * options.window)
-    return fail("the band holds fewer than two windows of " + std::to_string(options.window) + " bins");
+  const std::vector<Window> windows = cut(error.rows(), bins);
+  const int bands = std::min(options.bands, static_cast<int>(windows.size()));
   ResidualResponse out;
   out.frequency_hz = frequency_hz;
-  const std::vector<Window> windows = cut(error.rows(), options.window);
-  out.tests = static_cast<int>(windows.size()) * inputs * outputs;
+  out.limit = math::quantile(math::complement(math::normal(), options.level / (bands * inputs * outputs)));
   out.response.setZero(error.rows(), static_cast<Eigen::Index>(outputs) * inputs);
   out.before = error.colwise().squaredNorm().transpose();
   out.output_energy = output.colwise().squaredNorm().transpose();
-  out.after.resize(outputs);
+  out.after = out.before;
   out.floor.setZero(outputs);
-
-  std::vector<int> all;
-  for (int j = 0; j < inputs; ++j) all.push_back(j);
   for (int i = 0; i < outputs; ++i) {
-    std::vector<char> significant(static_cast<std::size_t>(inputs), 0);
-    for (const Window& w : windows) {
-      const Eigen::MatrixXd polynomial = powers(w.bins, options.order);
-      const Matrix u = input.middleRows(w.first, w.bins);
-      const Vector e = error.col(i).segment(w.first, w.bins);
-      const double full = fit(regressor(polynomial, u, all), e).residual;
-      const double freedom = w.bins - unknowns;
-      out.floor[i] += full * w.bins / freedom;
-      for (int j = 0; j < inputs; ++j) {
-        std::vector<int> others = all;
-        others.erase(others.begin() + j);
-        const double without = fit(regressor(polynomial, u, others), e).residual;
-        const double f = (without - full) / (options.order + 1) / std::max(full / freedom, 1e-300);
-        const boost::math::fisher_f law(2.0 * (options.order + 1), 2.0 * freedom);
-        const double p = boost::math::cdf(boost::math::complement(law, std::max(0.0, f)));
-        if (p * out.tests > options.level) continue;
-        significant[static_cast<std::size_t>(j)] = 1;
-        out.places.push_back({i, j, frequency_hz[static_cast<std::size_t>(w.first)],
-                              frequency_hz[static_cast<std::size_t>(w.first + w.bins - 1)], p,
-                              (without - full) / e.squaredNorm()});
-      }
+    OutputError one(frequency_hz, windows, input, error.col(i), options);
+    out.floor[i] = one.floor();
+    std::vector<std::pair<double, int>> candidates;
+    for (int j = 0; j < inputs; ++j) {
+      bool significant = false;
+      const double explained = one.test(i, j, bands, out.limit, out.places, significant);
+      if (significant && explained >= options.material * out.before[i]) candidates.emplace_back(explained, j);
     }
-    // Forward: the element that explains most of the output's error, as long as it is significant and material.
+    std::sort(candidates.rbegin(), candidates.rend());
     std::vector<int> taken;
-    double left = residual_with(windows, error, input, i, taken, options.order);
-    const double start = left;
-    for (;;) {
-      int best = -1;
-      double least = left;
-      for (int j = 0; j < inputs; ++j) {
-        if (significant[static_cast<std::size_t>(j)] == 0 ||
-            std::find(taken.begin(), taken.end(), j) != taken.end())
-          continue;
-        std::vector<int> more = taken;
-        more.push_back(j);
-        const double with = residual_with(windows, error, input, i, more, options.order);
-        if (with < least) {
-          least = with;
-          best = j;
-        }
-      }
-      if (best < 0 || left - least < options.material * start) break;
-      taken.push_back(best);
-      out.elements.emplace_back(i, best);
-      out.explained.push_back((left - least) / out.before[i]);
-      left = least;
+    for (const auto& [explained, j] : candidates) {
+      taken.push_back(j);
+      out.elements.emplace_back(i, j);
+      out.explained.push_back(explained / out.before[i]);
     }
-    Vector rest = error.col(i);
-    for (const Window& w : windows) {
-      const Eigen::MatrixXd polynomial = powers(w.bins, options.order);
-      const Matrix u = input.middleRows(w.first, w.bins);
-      const Fit found = fit(regressor(polynomial, u, taken), error.col(i).segment(w.first, w.bins));
-      const Eigen::Index r = polynomial.cols();
-      for (std::size_t s = 0; s < taken.size(); ++s) {
-        const Vector h = polynomial.cast<std::complex<double>>() *
-                         found.coefficients.segment(r * static_cast<Eigen::Index>(s + 1), r);
-        out.response.col(static_cast<Eigen::Index>(taken[s]) * outputs + i).segment(w.first, w.bins) = h;
-        rest.segment(w.first, w.bins) -= h.cwiseProduct(u.col(taken[s]));
-      }
-    }
-    out.after[i] = rest.squaredNorm();
+    if (!taken.empty()) out.after[i] = one.repair(i, outputs, taken, out.response);
   }
   return out;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/stats/empirical.h"
 
@@ -79,13 +80,21 @@ std::vector<MapEntry> ResponseMap::read(const Eigen::Ref<const Eigen::VectorXcd>
     const MapCell& cell = cells_[c];
     const auto at = static_cast<Eigen::Index>(c);
     double power = 0.0, model = 0.0;
+    std::complex<double> product = 0.0;
     for (int k = cell.first; k <= cell.last; ++k) {
-      power += std::norm(response[element(k, cell.output, cell.input)]);
-      model += std::norm(mean_[element(k, cell.output, cell.input)]);
+      const std::complex<double> g = response[element(k, cell.output, cell.input)];
+      const std::complex<double> g0 = mean_[element(k, cell.output, cell.input)];
+      power += std::norm(g);
+      model += std::norm(g0);
+      product += g * std::conj(g0);
     }
-    out.push_back({cell, frequency_hz_[static_cast<std::size_t>(cell.first)],
-                   frequency_hz_[static_cast<std::size_t>(cell.last)], 10.0 * std::log10(power / model),
-                   (value[at] - centre_[at]) / std::max(deviation_[at], 1e-12)});
+    MapEntry entry{cell, frequency_hz_[static_cast<std::size_t>(cell.first)],
+                   frequency_hz_[static_cast<std::size_t>(cell.last)]};
+    entry.decibel = 10.0 * std::log10(power / model);
+    entry.degrees = std::arg(product) * 180.0 / std::numbers::pi;
+    entry.sigma = std::sqrt(value[at]);
+    entry.limit = std::sqrt(centre_[at] + threshold_ * std::max(deviation_[at], 1e-12));
+    out.push_back(entry);
   }
   return out;
 }

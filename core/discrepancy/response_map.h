@@ -24,7 +24,10 @@ struct MapEntry {
   MapCell cell;
   double low_hz = 0.0, high_hz = 0.0;
   double decibel = 0.0;  ///< power of the response over that of the model's
-  double sigma = 0.0;    ///< of the cell's statistic, in deviations of the model's flights
+  double degrees = 0.0;  ///< phase of the response against the model's, mean over the band weighted by power
+  double sigma = 0.0;    ///< rms of |G - G_0| over the band, in standard deviations of an estimate
+  double limit = 0.0;    ///< what sigma exceeds anywhere on the map in 1 % of the model's flights
+  [[nodiscard]] bool significant() const { return sigma > limit; }
 };
 
 class ResponseMap {
@@ -37,8 +40,6 @@ class ResponseMap {
   static ResponseMap fit(const LpmGrid& grid, const Eigen::Ref<const Eigen::MatrixXcd>& responses);
 
   [[nodiscard]] const std::vector<MapCell>& cells() const { return cells_; }
-  /// Above this a cell's sigma belongs to the largest of a map in 1 % of flights of the model.
-  [[nodiscard]] double threshold() const { return threshold_; }
   /// All cells, in their order.
   [[nodiscard]] std::vector<MapEntry> read(const Eigen::Ref<const Eigen::VectorXcd>& response) const;
   [[nodiscard]] const Eigen::VectorXcd& mean() const { return mean_; }

@@ -7,6 +7,7 @@ Benchmark are medians of repetitions; whole commands are timed several times and
 import argparse
 import json
 import pathlib
+import resource
 import statistics
 import subprocess
 import sys
@@ -119,13 +120,52 @@ def coverage_campaign_memory():
     return largest
 
 
+def diagnosis_seconds():
+    """Wall time of a diagnosis of an experiment's first record, 400 s flown with a delay, and CPU time of its second."""
+    model, experiment = ROOT / "campaigns/models/fat.toml", ROOT / "campaigns/experiments/chapter5.toml"
+    with tempfile.TemporaryDirectory() as folder:
+        for seed in (1, 2):
+            subprocess.run([str(BIN / "fatmc"), "simulate", str(model), str(experiment), "--seed", "1", "--repetition",
+                            str(seed), "--effect", "transport_delay:delay_s=0.03", "-o", f"{folder}/{seed}.csv"],
+                           check=True, capture_output=True)
+
+        def diagnose(record):
+            start, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
+            subprocess.run([str(BIN / "fatmc"), "diagnose", "--model", str(model), "--record", record, "-o",
+                            f"{folder}/diagnosis", "--cache", folder], check=True, capture_output=True)
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            return time.monotonic() - start, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+        cold = diagnose(f"{folder}/1.csv")[0]
+        return {"diagnose_s": cold, "diagnose_cached_cpu_s": diagnose(f"{folder}/1.csv")[1]}
+
+
+def thesis_seconds():
+    """Wall time of all studies at the thesis's size."""
+    with tempfile.TemporaryDirectory() as folder:
+        start = time.monotonic()
+        subprocess.run([str(BIN / "fatmc"), "run", str(ROOT / "campaigns/thesis.toml"), "--workers", "2"], check=True,
+                       capture_output=True, cwd=folder)
+        return time.monotonic() - start
+
+
+# name: (what measures it, unit, bar, where the bar is from)
+COMMANDS = {
+    "coverage_campaign_s": (coverage_campaign_seconds, "s", 3.0, "bar: 50 trials on 2 cores, start to table"),
+    "campaign_memory_mb": (coverage_campaign_memory, "MB", 200.0, "bar: largest process of a campaign"),
+    "thesis_campaign_s": (thesis_seconds, "s", 60.0, "bar: all studies of the thesis on 2 cores"),
+    "diagnose_s": (diagnosis_seconds, "s", 20.0, "bar: a 400 s record, nothing cached, 2 cores"),
+    "diagnose_cached_cpu_s": (diagnosis_seconds, "s", 1.0, "bar: processor time once model and experiment are cached"),
+}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", action="store_true", help="print JSON lines")
     parser.add_argument("--only", help="rows whose name holds this text")
     arguments = parser.parse_args()
 
-    chosen_names = [name for name in [*GOOGLE, "coverage_campaign_s"] if (arguments.only or "") in name]
+    chosen_names = [name for name in [*GOOGLE, *COMMANDS] if (arguments.only or "") in name]
     measured = dask_peer() if {"acked_per_s", "efficiency_10ms"} & set(chosen_names) else {}
 
     def emit(name, unit, reference, higher, source):
@@ -146,12 +186,13 @@ def main():
         if name not in measured:
             measured.update(google_benchmark(program, chosen))
         emit(name, unit, measured.get(reference) if isinstance(reference, str) else reference, higher, source)
-    if "coverage_campaign_s" not in chosen_names:
-        return
-    measured["coverage_campaign_s"] = coverage_campaign_seconds()
-    emit("coverage_campaign_s", "s", 3.0, False, "bar: 50 trials on 2 cores, start to table")
-    measured["campaign_memory_mb"] = coverage_campaign_memory()
-    emit("campaign_memory_mb", "MB", 200.0, False, "bar: largest process of a campaign")
+    for name, (measure, unit, bar, source) in COMMANDS.items():
+        if name not in chosen_names:
+            continue
+        if name not in measured:
+            value = measure()
+            measured.update(value if isinstance(value, dict) else {name: value})
+        emit(name, unit, bar, False, source)
 
 
 if __name__ == "__main__":

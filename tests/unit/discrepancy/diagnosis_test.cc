@@ -24,8 +24,9 @@ struct Bench {
     options.flights = 300;
     options.threads = 2;
     // Every test is a process that learns the law anew: kinds with long grids, and some that are weak here, are left out.
-    options.excluded = {"flexible_mode", "slosh", "rate_limit", "position_limit", "drag", "cl_r", "cy_beta", "lift_of_elevator",
-                        "thrust_line", "surface_bias", "gyro_bias"};
+    options.excluded = {"flexible_mode", "slosh",        "rate_limit", "position_limit",
+                        "drag",          "cl_r",         "cy_beta",    "lift_of_elevator",
+                        "thrust_line",   "surface_bias", "gyro_bias"};
     basis = std::make_unique<ComparisonBasis>(*ComparisonBasis::make(model, grid, options));
   }
   static PeriodicExperiment experiment() {
@@ -44,7 +45,8 @@ struct Bench {
     RandomStream phases({1, name_hash("diagnosis test"), 0, 0}, "excitation");
     const double amplitude[] = {0.05, 0.03, 0.05};
     for (int axis = 0; axis < 3; ++axis) {
-      const std::vector<double> r = Multisine::random_phase(kPeriod, experiment().lines, amplitude[axis], phases).samples(2);
+      const std::vector<double> r =
+          Multisine::random_phase(kPeriod, experiment().lines, amplitude[axis], phases).samples(2);
       out.col(axis) = Eigen::Map<const Eigen::VectorXd>(r.data(), 2 * kPeriod);
     }
     return out;
@@ -100,8 +102,10 @@ TEST_F(DiagnosisOfARecord, NamesAHiddenDelayWithItsIntervalAndClosesTheGap) {
 }
 
 TEST_F(DiagnosisOfARecord, NamesTwoEffectsAtOnce) {
-  const Diagnosis d = bench_->answer(
-      bench_->record({*parse_effect("control_effectiveness:axis=roll,factor=0.8"), *parse_effect("gyro_scale:axis=pitch,error=0.1")}, 5));
+  const Diagnosis d =
+      bench_->answer(bench_->record({*parse_effect("control_effectiveness:axis=roll,factor=0.8"),
+                                     *parse_effect("gyro_scale:axis=pitch,error=0.1")},
+                                    5));
   ASSERT_EQ(d.verdict, Verdict::named);
   std::set<std::string> names;
   for (const FoundEffect& f : d.effects) names.insert(f.effect.name());
@@ -110,7 +114,8 @@ TEST_F(DiagnosisOfARecord, NamesTwoEffectsAtOnce) {
 
 TEST_F(DiagnosisOfARecord, IsUnknownWhereNoCandidateExplainsIt) {
   // A tone between two lines is no candidate.
-  const Diagnosis d = bench_->answer(bench_->record({*parse_effect("tone:axis=pitch,amplitude_deg_s=1,frequency_hz=0.8125")}, 6));
+  const Diagnosis d = bench_->answer(
+      bench_->record({*parse_effect("tone:axis=pitch,amplitude_deg_s=1,frequency_hz=0.8125")}, 6));
   EXPECT_EQ(d.verdict, Verdict::unknown);
 }
 
@@ -128,7 +133,8 @@ TEST_F(DiagnosisOfARecord, ABasisReadsBackBitForBitAndIsRefusedWhenDamagedOrFore
   EXPECT_EQ(basis_text(*same, "key"), text);
   EXPECT_EQ((same->atoms - bench_->basis->atoms).norm(), 0.0);
   EXPECT_FALSE(parse_basis(text, "another", bench_->layout, bench_->grid, bench_->options));
-  EXPECT_FALSE(parse_basis(text.substr(0, text.size() - 1), "key", bench_->layout, bench_->grid, bench_->options));
+  EXPECT_FALSE(
+      parse_basis(text.substr(0, text.size() - 1), "key", bench_->layout, bench_->grid, bench_->options));
   std::string damaged = text;
   damaged[text.size() / 2] = static_cast<char>(damaged[text.size() / 2] ^ 1);
   EXPECT_FALSE(parse_basis(damaged, "key", bench_->layout, bench_->grid, bench_->options));

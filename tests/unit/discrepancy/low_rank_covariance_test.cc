@@ -52,7 +52,8 @@ TEST(LowRankCovariance, FitFindsDirectionsAndTheirVariance) {
   direction.col(0).head(30).setConstant(1.0 / std::sqrt(30.0));
   direction.col(1).tail(30).setConstant(1.0 / std::sqrt(30.0));
   const Eigen::MatrixXd factor = direction * Eigen::Vector2d(5.0, 3.0).asDiagonal();
-  const Eigen::MatrixXd x = normals(samples, n, "white") + normals(samples, 2, "low rank") * factor.transpose();
+  const Eigen::MatrixXd x =
+      normals(samples, n, "white") + normals(samples, 2, "low rank") * factor.transpose();
   const LowRankCovariance fit = LowRankCovariance::fit(x, 8);
   ASSERT_EQ(fit.rank(), 2);
   const double four_errors = 4.0 * std::sqrt(2.0 / samples);

@@ -50,7 +50,8 @@ TEST(RecordFeatures, ALineIsTheDftOfItsChannel) {
   // q = 0.3 cos(2 pi k (n + 1/2) / N) at the third excited line, which ends as it begins: |Y| = 0.3 sqrt(N)/2, phase pi k/N.
   const int line = l.experiment.lines[2];
   for (Eigen::Index i = 0; i < record.output.rows(); ++i) {
-    record.output(i, 1) = 0.3 * std::cos(2.0 * std::numbers::pi * line * (static_cast<double>(i) + 0.5) / kPeriod);
+    record.output(i, 1) =
+        0.3 * std::cos(2.0 * std::numbers::pi * line * (static_cast<double>(i) + 0.5) / kPeriod);
   }
   const Eigen::VectorXd x = FeatureExtractor(l, Eigen::Vector3d::Constant(0.1)).extract(record);
   const FeatureBlock& b = block(l, FeatureKind::line, 2);
@@ -119,7 +120,8 @@ TEST(RecordFeatures, ALatticeShowsInTheRepeatedValues) {
 // Samples of known covariance: a line's complex channels mixed by a known matrix, all else white. Whitened by the law of one
 // half, the other half has unit covariance to within sampling error.
 TEST(NullLaw, WhitensWhatItHasNotSeen) {
-  const FeatureLayout l = *FeatureLayout::create({{4, 6, 8, 10, 12, 14, 16, 18, 20, 22}, kPeriod, kPeriods, kRate}, false, false, false);
+  const FeatureLayout l = *FeatureLayout::create(
+      {{4, 6, 8, 10, 12, 14, 16, 18, 20, 22}, kPeriod, kPeriods, kRate}, false, false, false);
   constexpr int flights = 4000;
   RandomStream random({8, 0, 0, 0}, "features");
   Eigen::MatrixXd x(flights, l.size);
@@ -146,7 +148,8 @@ TEST(NullLaw, WhitensWhatItHasNotSeen) {
   const Eigen::MatrixXd lines = z.middleRows(line.first, 6);
   const Eigen::MatrixXd covariance = lines * lines.transpose() / (flights / 2.0);
   // An element of the sample covariance has the error (2/N)^(1/2); twice that for the law's own, five of them for 36.
-  EXPECT_LT((covariance - Eigen::MatrixXd::Identity(6, 6)).cwiseAbs().maxCoeff(), 5.0 * 2.0 * std::sqrt(2.0 / (flights / 2.0)));
+  EXPECT_LT((covariance - Eigen::MatrixXd::Identity(6, 6)).cwiseAbs().maxCoeff(),
+            5.0 * 2.0 * std::sqrt(2.0 / (flights / 2.0)));
 }
 
 }  // namespace

@@ -48,9 +48,11 @@ TEST(SignatureScan, AmplitudesAreNeverNegative) {
 // draws: standard error 0.34 %, four of them.
 TEST(SignatureScan, NullLawIsHalfChiSquare) {
   constexpr int draws = 4000;
-  const Eigen::MatrixXd atom = normals(40, 1, "atoms"), fitted = normals(40, 2, "fitted"), z = normals(40, draws, "z");
+  const Eigen::MatrixXd atom = normals(40, 1, "atoms"), fitted = normals(40, 2, "fitted"),
+                        z = normals(40, draws, "z");
   int beyond = 0;
-  for (int i = 0; i < draws; ++i) beyond += scan_signatures(z.col(i), atom, fitted)[0].glr > 2.705543454 ? 1 : 0;
+  for (int i = 0; i < draws; ++i)
+    beyond += scan_signatures(z.col(i), atom, fitted)[0].glr > 2.705543454 ? 1 : 0;
   EXPECT_NEAR(beyond / static_cast<double>(draws), 0.05, 4.0 * std::sqrt(0.05 * 0.95 / draws));
 }
 

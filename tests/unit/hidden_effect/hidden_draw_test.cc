@@ -10,7 +10,9 @@
 namespace fatmc::hidden_effect {
 namespace {
 
-RandomStream stream(std::uint64_t repetition) { return {{1, name_hash("draw test"), 0, repetition}, "hidden"}; }
+RandomStream stream(std::uint64_t repetition) {
+  return {{1, name_hash("draw test"), 0, repetition}, "hidden"};
+}
 
 /// Files of the project that a file includes, directly or through others.
 void collect(const std::string& path, std::set<std::string>& seen) {
