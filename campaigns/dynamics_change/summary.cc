@@ -21,6 +21,8 @@ constexpr const char* kZeros =
 constexpr const char* kGate =
     "the SNR gate makes the CSL zero on its own in about half of the epochs before the change: README.md";
 
+constexpr const char* kScatter = "single flights scatter from 15 to 265 s: README.md";
+
 /// Median of the values that exist.
 RunStatistic median_of(const std::vector<double>& values) {
   return [&values](std::span<const std::size_t> picks) {
@@ -110,7 +112,7 @@ class CellTable {
     TableRow row = median_row("Fig. 5-16", name_, csl_name + " falls below half, after", fall, true);
     row.published = published_value(published_, row);
     row.why = missing_note(fall, "without a fall, or with nothing to fall from");
-    judge_by_order(row, rule == Detector::csl ? kGate : "");
+    judge_by_order(row, rule == Detector::csl ? kGate : kScatter);
     out_.push_back(std::move(row));
     TableRow back =
         median_row("Fig. 5-16", name_, csl_name + " back above half for good, after", recovery, false);
