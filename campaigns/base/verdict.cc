@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/stats/intervals.h"
+
 namespace fatmc {
 namespace {
 
@@ -17,6 +19,7 @@ void add_reason(TableRow& row, std::string_view reason) {
 
 bool same_order(const TableRow& row) {
   const double ratio = row.value / row.published;
+  if (row.unit == "dB" && std::abs(row.value - row.published) > 10.0) return false;
   return ratio > 0.0 && std::abs(std::log10(ratio)) <= 0.5;
 }
 
@@ -54,38 +57,77 @@ void fill_mean(TableRow& row, std::span<const double> runs, std::uint64_t publis
 }
 
 void fill_statistic(TableRow& row, std::size_t runs, std::size_t published_runs,
-                    const RunStatistic& statistic) {
+                    const RunStatistic& statistic, StatisticScale scale) {
   row.n = runs;
   if (runs == 0) return;
   std::vector<std::size_t> all(runs);
   for (std::size_t k = 0; k < runs; ++k) all[k] = k;
   row.value = statistic(all);
-  const Interval interval = bootstrap_prediction(runs, published_runs, statistic);
+  if (runs < kFewestRuns) {
+    add_reason(row, "fewer than " + std::to_string(kFewestRuns) + " runs: no interval");
+    return;
+  }
+  const double whole = row.value;
+  const RunStatistic scaled = [&](std::span<const std::size_t> picks) {
+    const double value = statistic(picks);
+    if (scale == StatisticScale::ratio) return value > 0.0 ? std::log(value / whole) : kNone;
+    if (scale == StatisticScale::angle_deg) return std::remainder(value - whole, 360.0);
+    return value - whole;
+  };
+  const Interval interval = bootstrap_prediction(runs, published_runs, scaled);
   if (!std::isfinite(interval.low) || !std::isfinite(interval.high)) return;
-  row.low = interval.low;
-  row.high = interval.high;
+  const auto n = static_cast<double>(runs);
+  constexpr double z = 1.959963984540054;
+  const double wider = t_quantile(0.975, n - 1.0) / z * std::sqrt(n / (n - 1.0));
+  const double low = wider * interval.low, high = wider * interval.high;
+  if (scale == StatisticScale::angle_deg && high - low >= 360.0) {
+    add_reason(row, "runs scatter over the whole turn: no interval");
+    return;
+  }
+  row.low = scale == StatisticScale::ratio ? whole * std::exp(low) : whole + low;
+  row.high = scale == StatisticScale::ratio ? whole * std::exp(high) : whole + high;
 }
 
 void fill_share(TableRow& row, std::uint64_t hits, std::uint64_t runs, std::uint64_t published_runs) {
   row.n = runs;
   if (runs == 0) return;
-  const auto n = static_cast<double>(runs);
-  const double share = static_cast<double>(hits) / n;
-  row.value = 100.0 * share;
+  const auto n = static_cast<double>(runs), h = static_cast<double>(hits),
+             m = static_cast<double>(published_runs);
+  row.value = 100.0 * h / n;
   if (runs < 2) return;
-  const double m = 1.0 / (1.0 / n + 1.0 / static_cast<double>(published_runs));
-  constexpr double z = 1.959963984540054;
-  const double centre = (share + z * z / (2.0 * m)) / (1.0 + z * z / m);
-  const double half = z / (1.0 + z * z / m) * std::sqrt(share * (1.0 - share) / m + z * z / (4.0 * m * m));
-  // All or none: the end of the interval is the share itself, which rounding would put just inside.
-  row.low = hits == 0 ? 0.0 : 100.0 * std::max(0.0, centre - half);
-  row.high = hits == runs ? 100.0 : 100.0 * std::min(1.0, centre + half);
+  // P(K = k) = C(m, k) B(k + a, m - k + b) / B(a, b)
+  const double a = h + 0.5, b = n - h + 0.5;
+  const auto log_beta = [](double x, double y) {
+    return std::lgamma(x) + std::lgamma(y) - std::lgamma(x + y);
+  };
+  double sum = 0.0;
+  bool low_found = false;
+  for (std::uint64_t k = 0; k <= published_runs; ++k) {
+    const auto x = static_cast<double>(k);
+    sum += std::exp(std::lgamma(m + 1.0) - std::lgamma(x + 1.0) - std::lgamma(m - x + 1.0) +
+                    log_beta(x + a, m - x + b) - log_beta(a, b));
+    if (!low_found && sum >= 0.025) {
+      row.low = 100.0 * x / m;
+      low_found = true;
+    }
+    if (sum >= 0.975) {
+      row.high = 100.0 * x / m;
+      return;
+    }
+  }
+  row.high = 100.0;
+}
+
+void clamp_interval(TableRow& row, double lowest, double highest) {
+  if (std::isnan(row.low) || std::isnan(row.high)) return;
+  row.low = std::max(lowest, row.low);
+  row.high = std::min(highest, row.high);
 }
 
 void judge(TableRow& row, bool alike, std::string_view reason) {
   if (std::isnan(row.published)) return;
   if (std::isnan(row.low) || std::isnan(row.high)) {
-    add_reason(row, "one run has no scatter: no interval, no verdict");
+    add_reason(row, row.n < 2 ? "one run has no scatter: no interval, no verdict" : "no verdict");
     return;
   }
   if (row.published >= row.low && row.published <= row.high) {
@@ -102,6 +144,13 @@ void judge_upper_bound(TableRow& row, std::string_view reason) {
   if (std::isnan(row.published)) return;
   add_reason(row, "printed is a bound, less than");
   if (!(row.low < row.published)) return judge(row, same_order(row), reason);
+  row.verdict = "match";
+}
+
+void judge_lower_bound(TableRow& row, std::string_view reason) {
+  if (std::isnan(row.published)) return;
+  add_reason(row, "printed is a bound, more than");
+  if (!(row.high > row.published)) return judge(row, same_order(row), reason);
   row.verdict = "match";
 }
 

@@ -23,23 +23,40 @@ double published_value(const std::vector<PublishedFigure>& figures, const TableR
 void fill_mean(TableRow& row, std::span<const double> runs, std::uint64_t published_runs,
                double unit_factor = 1.0);
 
-/// Value and 95 % prediction interval of any statistic of `runs` runs, by bootstrap over runs.
-void fill_statistic(TableRow& row, std::size_t runs, std::size_t published_runs,
-                    const RunStatistic& statistic);
+/// How resampled values of a statistic lie about its value.
+enum class StatisticScale {
+  additive,
+  ratio,     ///< positive: differences of logarithms
+  angle_deg  ///< differences modulo 360; half a turn and more says nothing: no interval
+};
 
-/// Share of runs with a property, in %: Wilson's interval for the difference of `hits` of `runs` from a share of
-/// `published_runs`, variance p (1 - p) (1/n + 1/m).
+/// Value and 95 % prediction interval of any statistic of `runs` runs, by bootstrap over runs, widened by
+/// t(n - 1)/z sqrt(n/(n - 1)) for what few runs leave unknown. Below kFewestRuns no interval, and why says so: resampling
+/// so few holds far less than it promises (a median of 4 runs: 82 %).
+inline constexpr std::size_t kFewestRuns = 8;
+void fill_statistic(TableRow& row, std::size_t runs, std::size_t published_runs,
+                    const RunStatistic& statistic, StatisticScale scale = StatisticScale::additive);
+
+/// Share of runs with a property, in %, and the 95 % prediction interval of that share among `published_runs` further ones:
+/// quantiles of the beta-binomial law with Jeffreys' prior, Beta(hits + 1/2, runs - hits + 1/2).
 void fill_share(TableRow& row, std::uint64_t hits, std::uint64_t runs, std::uint64_t published_runs);
+
+/// Keeps the interval inside what the quantity can be; without an interval there is none afterwards.
+void clamp_interval(TableRow& row, double lowest, double highest);
 
 /// Verdict where something is printed: `match` inside [low, high]; else `shape` if `alike`, or `differs`, with `reason`
 /// appended to row.why. No interval: no verdict, and why says so.
 void judge(TableRow& row, bool alike, std::string_view reason);
 
-/// `alike` = same sign and order of magnitude: |log10(value / published)| <= 1/2; published 0: never.
+/// `alike` = same sign and order of magnitude: |log10(value / published)| <= 1/2, and for decibels no more than 10 dB apart,
+/// too; published 0: never.
 void judge_by_order(TableRow& row, std::string_view reason);
 
 /// "Less than row.published" is printed: `match` where the interval begins below that; else `shape` by order, or `differs`.
 void judge_upper_bound(TableRow& row, std::string_view reason);
+
+/// "More than row.published" is printed, likewise: `match` where the interval ends above that.
+void judge_lower_bound(TableRow& row, std::string_view reason);
 
 /// `alike` = both on the same side of a nominal value (75 % of a nominal 75 % region).
 void judge_by_side(TableRow& row, double nominal, std::string_view reason);

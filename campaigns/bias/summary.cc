@@ -145,7 +145,8 @@ class CellTables {
   void statistic(const std::string& table, const std::string& row, const std::string& quantity,
                  const std::string& unit, std::string_view why, const RunStatistic& of) {
     TableRow out = begin(table, row, quantity, quantity, unit);
-    fill_statistic(out, runs_.runs(), kPublishedRepetitions, of);
+    fill_statistic(out, runs_.runs(), kPublishedRepetitions, of,
+                   unit == "deg" ? StatisticScale::angle_deg : StatisticScale::additive);
     judge_by_order(out, why);
     out_.push_back(std::move(out));
   }

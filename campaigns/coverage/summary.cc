@@ -17,8 +17,7 @@ TableRow percent_row(const std::string& table, const std::string& row, const std
                      const std::vector<double>& shares, std::uint64_t n) {
   TableRow out = table_row(table, row, quantity, "%");
   fill_mean(out, shares, kPublishedRepetitions, 100.0);
-  out.low = std::max(0.0, out.low);
-  out.high = std::min(100.0, out.high);
+  clamp_interval(out, 0.0, 100.0);
   out.n = n;
   return out;
 }

@@ -83,18 +83,19 @@ QuarterWindow quarter_window(const MonitoredRun& run, const std::vector<double>&
 
 CslFall csl_fall(const MonitoredRun& run, const std::vector<double>& csl) {
   CslFall out;
-  double sum = 0.0;
+  double sum = 0.0, at_onset = 0.0;
   int n = 0;
   for (std::size_t i = 0; i < run.epochs(); ++i) {
     const double since = run.time(i) - run.onset_s;
     if (since <= 0.0 && since > -quarter(run) && run.time(i) >= run.window_s - kRounding) {
       sum += csl[i];
+      at_onset = csl[i];
       ++n;
     }
   }
   if (n == 0) return out;
   out.before = sum / n;
-  if (out.before < 0.1) return out;
+  if (out.before < 0.1 || at_onset < 0.5 * out.before) return out;  // nothing to fall from, or down already
   std::size_t last_low = run.epochs();
   for (std::size_t i = 0; i < run.epochs(); ++i) {
     if (run.time(i) <= run.onset_s || csl[i] >= 0.5 * out.before) continue;

@@ -23,31 +23,29 @@ constexpr const char* kGate =
 
 constexpr const char* kScatter = "single flights scatter from 15 to 265 s: README.md";
 
-/// Median of the values that exist.
 RunStatistic median_of(const std::vector<double>& values) {
   return [&values](std::span<const std::size_t> picks) {
-    std::vector<double> there;
-    for (const std::size_t i : picks) {
-      if (!std::isnan(values[i])) there.push_back(values[i]);
-    }
-    if (there.empty()) return std::numeric_limits<double>::quiet_NaN();
-    return EmpiricalCdf(std::move(there)).quantile(0.5);
+    std::vector<double> picked;
+    for (const std::size_t i : picks) picked.push_back(values[i]);
+    return EmpiricalCdf(std::move(picked)).quantile(0.5);
   };
 }
 
-/// Median over runs; beside print the interval of a single flight, else that of our median.
+/// Median over the runs that have a value, n of them; beside print the interval of a single flight, else that of our median.
 TableRow median_row(std::string table, const std::string& row, std::string quantity,
-                    const std::vector<double>& values, bool beside_print) {
+                    std::vector<double> values, bool beside_print) {
   TableRow out = table_row(std::move(table), row, std::move(quantity), "s");
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  out.n = values.size();
+  if (values.empty()) return out;
   if (beside_print) {
     fill_statistic(out, values.size(), kPublishedRuns, median_of(values));
     return out;
   }
   std::vector<std::size_t> all(values.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-  out.n = values.size();
-  if (values.empty()) return out;
   out.value = median_of(values)(all);
+  if (values.size() < kFewestRuns) return out;
   const Interval interval = bootstrap_interval(values.size(), median_of(values));
   out.low = interval.low;
   out.high = interval.high;
@@ -111,7 +109,8 @@ class CellTable {
     }
     TableRow row = median_row("Fig. 5-16", name_, csl_name + " falls below half, after", fall, true);
     row.published = published_value(published_, row);
-    row.why = missing_note(fall, "without a fall, or with nothing to fall from");
+    const std::string without = missing_note(fall, "without a fall, or with nothing to fall from");
+    if (!without.empty()) row.why += (row.why.empty() ? "" : "; ") + without;
     judge_by_order(row, rule == Detector::csl ? kGate : kScatter);
     out_.push_back(std::move(row));
     TableRow back =

@@ -123,7 +123,7 @@ class CellTables {
     TableRow row = begin("Fig. 5-9", "all lines", "lines with p = 0 in 50 runs, " + name,
                          "lines with p = 0 in 50 runs", "");
     fill_mean(row, zeros, kPublishedRepetitions, kPublishedRepetitions);
-    row.low = std::max(0.0, row.low);
+    clamp_interval(row, 0.0, std::numeric_limits<double>::infinity());
     judge_by_order(row, reading.why);
     out_.push_back(std::move(row));
     add_band("Fig. 5-10", "p(B)", runs_.band(reading, ssv, rule), name, reading.why);
@@ -173,9 +173,7 @@ class CellTables {
       TableRow row =
           begin("Fig. 5-8", hertz(runs_.frequency_hz[k]), "runs with p = 0, " + name, "runs with p = 0", "%");
       fill_share(row, zeros, runs_.runs(), kPublishedRepetitions);
-      judge(row, row.value > row.published,
-            std::string("printed is a bound, more than") +
-                (row.value > row.published ? "" : "; " + std::string(why)));
+      judge_lower_bound(row, why);
       out_.push_back(std::move(row));
     }
     statistic("Fig. 5-8", "0.35-2.89 Hz", "smallest median of p, " + name, "smallest median of p", "", why,
@@ -239,10 +237,7 @@ class CellTables {
     TableRow out = begin(table, row, quantity, printed, unit);
     fill_statistic(out, runs_.runs(), kPublishedRepetitions, of);
     // Shares and levels of confidence have ends that resampling does not know.
-    if (unit != "dB") {
-      out.low = std::max(0.0, out.low);
-      out.high = std::min(unit == "%" ? 100.0 : 1.0, out.high);
-    }
+    if (unit != "dB") clamp_interval(out, 0.0, unit == "%" ? 100.0 : 1.0);
     judge_by_order(out, why);
     out_.push_back(std::move(out));
   }

@@ -112,7 +112,8 @@ class CellTables {
     out.published = published_value(published_, out);
     out.row += suffix_;
     if (runs_.failed > 0) out.why = std::to_string(runs_.failed) + " trials without an estimate";
-    fill_statistic(out, runs_.runs(), kPublishedRepetitions, of);
+    fill_statistic(out, runs_.runs(), kPublishedRepetitions, of,
+                   unit == "dB" ? StatisticScale::additive : StatisticScale::ratio);
     judge_by_order(out, why);
     out_.push_back(std::move(out));
   }

@@ -142,8 +142,18 @@ Exit write_figures(const std::vector<CampaignPage>& pages, const std::string& fo
   return Exit::done;
 }
 
+bool is_database(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string begin(15, '\0');
+  return in.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == "SQLite format 3";
+}
+
 Exit run(const Options& options) {
   if (Status status = check_output_file(options.page); !status) return report(status.error());
+  if (is_database(options.page)) {
+    return report(
+        Error{options.page, 0, "-o", "is a database, which would be overwritten; write another file"});
+  }
   if (!options.figures.empty()) {
     if (Status status = check_output_directory(options.figures); !status) return report(status.error());
   }

@@ -26,8 +26,12 @@ std::vector<std::string> names_of(const std::vector<TableRow>& rows) {
   return names;
 }
 
-// "5-5" means "5-5", or else the table whose name ends so: "Fig. 5-4" for "5-4", "Section 5.2.3" for "5.2.3".
-std::string full_name(const std::vector<std::string>& known, const std::string& wanted) {
+// "5-5" means "5-5", or else the table whose name ends so: "Fig. 5-4" for "5-4", "Section 5.2.3" for "5.2.3". Headings and the
+// words for a figure are understood, too.
+std::string full_name(const std::vector<std::string>& known, std::string wanted) {
+  for (const std::string prefix : {"Table ", "table ", "Figure ", "figure ", "Fig ", "fig ", "fig. "}) {
+    if (wanted.starts_with(prefix)) wanted.erase(0, prefix.size());
+  }
   if (std::find(known.begin(), known.end(), wanted) != known.end()) return wanted;
   for (const std::string& name : known) {
     if (name.ends_with(" " + wanted)) return name;

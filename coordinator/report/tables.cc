@@ -44,6 +44,13 @@ std::string rule(const std::array<std::size_t, kColumns>& widths) {
   return out + "\n";
 }
 
+// A pipe would begin another cell.
+std::string markdown_text(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '|' ? std::string("\\|") : std::string(1, c);
+  return out;
+}
+
 // One table: a heading, its lines, and below them the reasons, each once, by number.
 std::string format_table(const std::vector<TableRow>& rows, TableFormat format) {
   const bool markdown = format == TableFormat::markdown;
@@ -56,9 +63,10 @@ std::string format_table(const std::vector<TableRow>& rows, TableFormat format) 
       verdict += (verdict.empty() ? "[" : " [") + std::to_string(reason) + "]";
     }
     const bool repeated = above != nullptr && above->row == row.row && !markdown;
-    lines.push_back({repeated ? "" : row.row, row.quantity, row.unit, table_number(row.published, row.unit),
-                     table_number(row.value, row.unit), table_interval(row),
-                     row.n > 0 ? std::to_string(row.n) : "-", verdict});
+    const auto plain = [&](const std::string& text) { return markdown ? markdown_text(text) : text; };
+    lines.push_back({repeated ? "" : plain(row.row), plain(row.quantity), row.unit,
+                     table_number(row.published, row.unit), table_number(row.value, row.unit),
+                     table_interval(row), row.n > 0 ? std::to_string(row.n) : "-", verdict});
     above = &row;
   }
   std::array<std::size_t, kColumns> widths{};

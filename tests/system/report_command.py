@@ -85,6 +85,8 @@ with tempfile.TemporaryDirectory() as folder:
     refused(run("report", database, "-o", folder), folder)
     refused(run("report", database, "-o", f"{folder}/missing/c.html"), "missing")
     refused(run("report", database), "-o")
+    refused(run("report", database, "-o", database), "is a database")
+    assert run("tables", database).returncode == 0
     with open(f"{folder}/text.db", "w") as file:
         file.write("no database\n")
     refused(run("report", f"{folder}/text.db", "-o", f"{folder}/n.html"), "text.db")

@@ -11,7 +11,7 @@ namespace fatmc {
 namespace {
 
 TableRow judged(double published, double value, double low, double high) {
-  TableRow row = table_row("T", "r", "q", "dB");
+  TableRow row = table_row("T", "r", "q", "Hz");
   row.published = published;
   row.value = value;
   row.low = low;
@@ -78,20 +78,65 @@ TEST(FillMean, IsThePredictionIntervalOfFurtherRunsAndLeavesOutNaN) {
   EXPECT_EQ(row.n, 4U);
 }
 
-TEST(FillShare, IsWilsonsIntervalForTheDifferenceOfTwoShares) {
-  TableRow row = table_row("T", "r", "q", "%"), endless = table_row("T", "r", "q", "%");
+TEST(FillShare, IsTheBetaBinomialPrediction) {
+  TableRow row = table_row("T", "r", "q", "%");
   fill_share(row, 13, 50, 50);
   EXPECT_DOUBLE_EQ(row.value, 26.0);
-  const Interval half = proportion_interval(13, 50);
-  EXPECT_LT(row.low, 100.0 * half.low);
-  EXPECT_GT(row.high, 100.0 * half.high);
-  fill_share(endless, 13, 50, 1'000'000'000);  // against a campaign without scatter of its own
-  EXPECT_NEAR(endless.low, 100.0 * half.low, 1e-5);
-  EXPECT_NEAR(endless.high, 100.0 * half.high, 1e-5);
+  // scipy.stats.betabinom(50, 13.5, 37.5).ppf([0.025, 0.975]) = 5, 22
+  EXPECT_DOUBLE_EQ(row.low, 10.0);
+  EXPECT_DOUBLE_EQ(row.high, 44.0);
+}
+
+TEST(FillShare, HoldsAllOrNoneWhereTheyAreLikely) {
+  TableRow all = table_row("T", "r", "q", "%"), none = table_row("T", "r", "q", "%");
+  fill_share(all, 4950, 5000, 50);  // 0.99^50 = 0.61
+  fill_share(none, 50, 5000, 50);
+  EXPECT_DOUBLE_EQ(all.high, 100.0);
+  EXPECT_DOUBLE_EQ(none.low, 0.0);
+}
+
+TEST(ClampInterval, MakesNoIntervalOfNone) {
+  TableRow row = judged(50.0, 60.0, std::nan(""), std::nan("")), other = judged(50.0, 60.0, -5.0, 105.0);
+  clamp_interval(row, 0.0, 100.0);
+  clamp_interval(other, 0.0, 100.0);
+  judge_by_order(row, "because");
+  EXPECT_EQ(row.verdict, "");
+  EXPECT_EQ(other.low, 0.0);
+  EXPECT_EQ(other.high, 100.0);
+}
+
+TEST(Verdict, OfDecibelsAsksForTenDecibels) {
+  TableRow far = judged(-17.0, -32.5, -33.0, -32.0), near = judged(-17.0, -25.0, -26.0, -24.0);
+  far.unit = near.unit = "dB";
+  judge_by_order(far, "because");
+  judge_by_order(near, "because");
+  EXPECT_EQ(far.verdict, "differs");
+  EXPECT_EQ(near.verdict, "shape");
+}
+
+TEST(FillStatistic, OfARatioIsPositiveAndOfAScatteredAngleHasNoInterval) {
+  const std::vector<double> runs = {0.1, 5.0, 0.2, 8.0, 0.1, 9.0, 0.3, 7.0, 0.2};
+  const std::vector<double> turn = {0.0, 170.0, -170.0, 90.0, -90.0, 120.0, -120.0, 10.0, 179.0};
+  const auto first = [](const std::vector<double>& values) {
+    return [&values](std::span<const std::size_t> picks) { return values[picks.front()]; };
+  };
+  TableRow ratio = table_row("T", "r", "q", ""), angle = table_row("T", "r", "q", "deg");
+  fill_statistic(ratio, runs.size(), 1, first(runs), StatisticScale::ratio);
+  EXPECT_GT(ratio.low, 0.0);
+  fill_statistic(angle, turn.size(), 1, first(turn), StatisticScale::angle_deg);
+  EXPECT_TRUE(std::isnan(angle.low));
+  EXPECT_NE(angle.why, "");
+}
+
+TEST(FillStatistic, OfFewRunsHasNoInterval) {
+  TableRow row = table_row("T", "r", "q", "");
+  fill_statistic(row, kFewestRuns - 1, 4, [](std::span<const std::size_t>) { return 1.0; });
+  EXPECT_EQ(row.value, 1.0);
+  EXPECT_TRUE(std::isnan(row.low));
 }
 
 TEST(FillStatistic, HasTheValueOfAllRuns) {
-  const std::vector<double> runs = {1.0, 2.0, 3.0, 4.0};
+  const std::vector<double> runs = {1.0, 2.0, 3.0, 4.0, 1.0, 2.0, 3.0, 4.0};
   TableRow row = table_row("T", "r", "q", "dB");
   fill_statistic(row, runs.size(), 4, [&](std::span<const std::size_t> picks) {
     double sum = 0.0;

@@ -61,7 +61,7 @@ TEST(BiasSummary, GivesErrorsMeansRangesAndAmplificationOfKnownRatios) {
                                                    ratio_of(-0.32, -2.5), 1.0};
   const std::vector<std::complex<double>> yaw = {ratio_of(7.8, 71.1), 1.0, ratio_of(-0.74, -10.1), 1.0, 1.0};
   std::vector<TrialRow> rows;
-  for (std::uint64_t run = 0; run < 4; ++run) rows.push_back(hand_made(run, pitch, yaw, 3.9));
+  for (std::uint64_t run = 0; run < 8; ++run) rows.push_back(hand_made(run, pitch, yaw, 3.9));
   const CampaignSpec spec = shipped("bias");
   const auto out = tables(spec, test::source_of(rows));
   ASSERT_TRUE(out);

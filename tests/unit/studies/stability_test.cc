@@ -125,8 +125,8 @@ TEST(StabilitySummary, TotalConfidenceNeedsNominalStabilityAndSnr) {
 
 TEST(StabilitySummary, HasARowForEveryPublishedFigureAndDrawsNineFigures) {
   std::vector<TrialRow> rows;
-  for (std::uint64_t run = 0; run < 6; ++run)
-    rows.push_back(hand_made(run, 0.3 + 0.1 * static_cast<double>(run), 0.8));
+  for (std::uint64_t run = 0; run < 9; ++run)
+    rows.push_back(hand_made(run, 0.3 + 0.06 * static_cast<double>(run), 0.8));
   const CampaignSpec spec = shipped("stability");
   EXPECT_EQ(test::complaints(tables_of(rows), decode_published(spec)->size()), "");
   const auto drawn = figures(spec, test::source_of(rows));
