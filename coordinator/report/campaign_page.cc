@@ -152,7 +152,8 @@ std::string campaign_page(const std::string& title, const std::vector<CampaignPa
       "<p><span class=\"verdict exact\">exact</span>: a formula's value has the printed digits. "
       "<span class=\"verdict match\">match</span>: the published value lies in the 95 % prediction "
       "interval for a campaign of the published size. <span class=\"verdict shape\">shape</span>: same "
-      "sign and order. <span class=\"verdict differs\">differs</span>: neither. Reasons stand below each "
+      "sign and order (half a decade; decibels within 10). <span class=\"verdict differs\">differs</span>: "
+      "neither. Reasons stand below each "
       "table. Intervals come from the scatter between runs.</p>\n" +
       contents(campaigns) + "</header>\n<main>\n";
   for (const CampaignPage& campaign : campaigns) body += section(campaign);
