@@ -63,7 +63,8 @@ std::vector<EffectKind> structure_kinds() {
        .physics = "A part m_s of the mass moves sideways in its tank as a mass on a spring: d2y/dt2 + 2 z w "
                   "dy/dt + w^2 y = -a_y at the "
                   "tank, and m_s (w^2 y + 2 z w dy/dt) acts on the body there. (Dodge, NASA SP-106, "
-                  "equivalent mechanical model.)",
+                  "equivalent mechanical model.) "
+                  "The moment m_s g y of the displaced weight is left out.",
        .parameters = {size("mass_kg", "kg", "m_s, part of the aircraft's mass", 0.8, 2.5, 1e4),
                       shape("frequency_hz", "Hz", "w/(2 pi)", 0.8, 0.05, 10.0, 0.4, 1.2),
                       shape("damping", "1", "z", 0.05, 0.001, 1.0, 0.02, 0.08),
