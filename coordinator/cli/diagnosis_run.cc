@@ -37,11 +37,9 @@ FlightProgress flight_progress() {
 /// The basis from the cache, or made and put there. A cache that cannot be written is no reason to fail.
 Result<ComparisonBasis> basis_of(const PreparedRecord& record, const DiagnosedModel& model,
                                  const std::string& cache) {
-  auto found = cached_basis({cache, basis_key(record, model)}, record.model->extractor().layout(), record.grid,
-                            record.basis, [&] {
-                              return ComparisonBasis::make(*record.model, record.grid, record.basis,
-                                                           flight_progress());
-                            });
+  auto found = cached_basis(
+      {cache, basis_key(record, model)}, record.model->extractor().layout(), record.grid, record.basis,
+      [&] { return ComparisonBasis::make(*record.model, record.grid, record.basis, flight_progress()); });
   if (!found) return fail(found.error());
   if (!found->trouble.empty()) {
     std::fprintf(stderr, "fatmc: the basis is not kept for the next diagnosis: %s\n", found->trouble.c_str());
@@ -211,8 +209,8 @@ Result<DiagnosisRun> run_diagnosis(const std::string& model_path, const std::vec
     if (round == 0) {
       FastLpm estimator(stack->prepared.front()->grid, 3);
       const ResponseMap& map = stack->bases.front()->map;
-      out.map = map.read(
-          response_vector(estimator, training.front()->record, training.front()->setup.closed_loop));
+      out.map =
+          map.read(response_vector(estimator, training.front()->record, training.front()->setup.closed_loop));
       page.where = places_of(comparison, out.map);
       page.thresholds = comparison.thresholds();
       page.diagnosis = diagnosis;
