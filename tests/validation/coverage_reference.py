@@ -8,7 +8,6 @@ The second is the reason behind the verdicts of Table 5-5 (campaigns/coverage/RE
 """
 import json
 import pathlib
-import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -16,19 +15,10 @@ import tempfile
 import numpy as np
 from scipy import stats
 
+from campaign_arrays import arrays
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LEVELS = (0.75, 0.90, 0.95, 0.99)
-
-
-def arrays(path, cell="nonlinear"):
-    """name -> runs x values of the trials that are ok."""
-    db = sqlite3.connect(path)
-    out = {}
-    rows = db.execute("SELECT a.name, a.data FROM arrays a JOIN trials t ON t.cell = a.cell AND t.repetition = a.repetition "
-                      "WHERE a.cell = ? AND t.outcome = 'ok' ORDER BY a.repetition", (cell,))
-    for name, data in rows:
-        out.setdefault(name, []).append(np.frombuffer(data, "<f8"))
-    return {name: np.array(values) for name, values in out.items()}
 
 
 def shares(squares, limits):
@@ -42,7 +32,7 @@ def compare(fatmc):
                        cwd=ROOT, capture_output=True)
         table = json.loads(subprocess.run([fatmc, "tables", path, "--only", "5-5", "--format", "json"], check=True,
                                           cwd=ROOT, capture_output=True, text=True).stdout)
-        a = arrays(path)
+        a = arrays(path, "nonlinear")
     error = a["error_re"] + 1j * a["error_im"]
     n = len(error)
     sample = (error - error.mean(axis=0)) * np.sqrt(n / (n - 1))
@@ -76,7 +66,7 @@ def compare(fatmc):
 
 
 def bias_experiment(fatmc, path):
-    a = arrays(path)
+    a = arrays(path, "nonlinear")
     model = json.loads(subprocess.run([fatmc, "linearize", "campaigns/models/fat.toml", "--format", "json"], check=True,
                                       cwd=ROOT, capture_output=True, text=True).stdout)["sampled"]
     A, B, C, D = (np.array(model[k]) for k in "ABCD")
