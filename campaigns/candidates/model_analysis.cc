@@ -16,7 +16,6 @@ namespace fatmc::candidates {
 namespace {
 
 constexpr double kFeet = 1.0 / 0.3048, kDegrees = 180.0 / std::numbers::pi;
-constexpr Eigen::Index kRollRate = 3;
 
 /// H (9): velocities in ft/s, rates in deg/s, attitudes in deg.
 Eigen::RowVectorXd rms_units() {

@@ -20,6 +20,8 @@ struct Validation {
   /// Roll rate of maneuver kRollManeuver alone: d1 of H (10) and deg/s (H Figs. 2 and 3).
   double roll_agreement = 0.0, roll_rms = 0.0;
 };
+/// Its output.
+inline constexpr Eigen::Index kRollRate = 3;
 /// The first multistep of the lateral control.
 inline constexpr std::size_t kRollManeuver = 2;
 

@@ -197,19 +197,19 @@ TEST(CandidatesTrial, TablesAndFiguresComeFromItsRows) {
   EXPECT_EQ(count, 8);  // n = 11 ... 18
   const auto drawn = figures(spec, rows);
   ASSERT_TRUE(drawn);
-  EXPECT_EQ(drawn->size(), 7U);
+  EXPECT_EQ(drawn->size(), 13U);  // Figs. 2 to 5, 6 and 7 of four selections, 8 to 12
 }
 
 ModelRow model(int past, double agreement, double norm) {
-  return {past, 20, 12, ModelState::ok, agreement, 1.0, norm, -1};
+  return {past, 20, 12, ModelState::ok, agreement, 1.0, norm, agreement, 1.0, -1};
 }
 
 TEST(Selection, BestByAgreementAloneAndBehindTheNormsLimit) {
   ModelTable table;
   table.models = {model(20, 0.80, 1e-12), model(30, 0.95, 1e-3), model(40, 0.90, 1e-12),
                   model(50, 0.85, 1e-12)};
-  table.models.push_back({60, 20, 12, ModelState::not_identified, 0.0, 0.0, 0.0, -1});
-  table.models.push_back({20, 20, 18, ModelState::ok, 0.99, 1.0, 1e-12, -1});
+  table.models.push_back({60, 20, 12, ModelState::not_identified});
+  table.models.push_back({20, 20, 18, ModelState::ok, 0.99, 1.0, 1e-12});
   const Selected selected = select(table, {12, 1e-10, 0.0, 0.4});  // two of five, failures among them
   EXPECT_EQ(selected.all, (std::vector<std::size_t>{1, 2, 3, 0}));
   EXPECT_EQ(selected.best, (std::vector<std::size_t>{1, 2}));
