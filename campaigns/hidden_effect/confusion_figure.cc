@@ -75,7 +75,7 @@ StudyFigure confusion_figure(const CellResults& cell) {
   panel.y = names_axis("hidden", rows);
   panel.marks = {std::move(right), std::move(wrong)};
   plot::Figure figure;
-  figure.title = "What was hidden and what was answered, " + cell.name;
+  figure.title = "Hidden and answered, " + cell.name;
   figure.panel_width = 240.0 + 19.0 * static_cast<double>(columns.size());
   figure.panel_height = 210.0 + 17.0 * static_cast<double>(rows.size());
   figure.panels = {std::move(panel)};

@@ -48,48 +48,35 @@ class ShareMarks {
   plot::Line bars_;
 };
 
-/// Effects of all cells, by number.
-std::vector<int> effects_of(const std::vector<const CellResults*>& cells) {
-  std::vector<int> out;
-  for (const CellResults* cell : cells) {
-    for (const auto& [number, one] : cell->by_effect) out.push_back(number);
-  }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
-
-/// A share of every effect, cells beside each other. `rules` are horizontal.
-StudyFigure by_effect(const std::vector<const CellResults*>& cells, const std::string& title,
-                      const std::string& label, Count CellResults::OneEffect::*count,
-                      const std::vector<plot::Rule>& rules, const std::string& caption) {
-  const std::vector<int> numbers = effects_of(cells);
+/// Right names and coverage of every effect of a cell, beside each other.
+StudyFigure by_effect(const CellResults& cell) {
   std::vector<std::string> names;
   std::vector<double> places;
-  for (const int number : numbers) {
-    places.push_back(static_cast<double>(names.size()));
+  ShareMarks right("right name", plot::Hue::green), covered("95 % interval holds the truth", plot::Hue::blue);
+  for (const auto& [number, one] : cell.by_effect) {
+    const auto place = static_cast<double>(names.size());
+    right.add(place - 0.15, one.right);
+    covered.add(place + 0.15, one.covered);
+    places.push_back(place);
     names.push_back(effect_name(number));
   }
   plot::Panel panel;
   panel.x = {"", plot::Scale::linear, plot::Range{-0.7, static_cast<double>(names.size()) - 0.3}, places,
              names};
-  panel.y = {label, plot::Scale::linear, plot::Range{0.0, 102.0}, {}};
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    ShareMarks marks(cells[c]->name, hue_of(c));
-    const double shift = 0.6 * (static_cast<double>(c) + 0.5) / static_cast<double>(cells.size()) - 0.3;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      const auto at = cells[c]->by_effect.find(numbers[i]);
-      if (at != cells[c]->by_effect.end()) marks.add(places[i] + shift, at->second.*count);
-    }
-    marks.put(panel);
-  }
-  for (const plot::Rule& rule : rules) panel.marks.emplace_back(rule);
+  panel.y = {"share of trials, %", plot::Scale::linear, plot::Range{0.0, 102.0}, {}};
+  right.put(panel);
+  covered.put(panel);
+  panel.marks.emplace_back(plot::Rule{"90 %, bar of every name at moderate size", 90.0});
   plot::Figure figure;
-  figure.title = title;
-  figure.panel_width = 120.0 + 20.0 * static_cast<double>(names.size());
+  figure.title = "Effect by effect, " + cell.name;
+  figure.panel_width = 120.0 + 16.0 * static_cast<double>(names.size());
   figure.panel_height = 420.0;
   figure.panels = {std::move(panel)};
-  return {title, caption, std::move(figure)};
+  return {"Effect by effect, " + cell.name,
+          "Share of the trials that hid the effect in which it was named, and of those in which it was named "
+          "the share whose "
+          "interval holds the first parameter; with 95 % intervals (Wilson).",
+          std::move(figure)};
 }
 
 /// Shares of the trials in bins of equal numbers, by a size.
@@ -121,6 +108,7 @@ plot::Panel by_size(const std::vector<const CellResults*>& cells, const std::str
     detected.add(middle, found);
     right.add(middle * 1.03, named);
   }
+  if (!all.empty()) panel.x.range = plot::Range{0.9 * all.front().*size, 1.1 * all.back().*size};
   detected.put(panel);
   right.put(panel);
   return panel;
@@ -210,16 +198,7 @@ Result<std::vector<StudyFigure>> figures(const CampaignSpec& spec, const RowSour
   }
   const std::vector<const CellResults*> known = known_cells(*cells);
   if (known.empty()) return out;
-  const std::string points = " A point an effect and a cell, with its 95 % interval (Wilson).";
-  out.push_back(by_effect(known, "Right names by effect", "right name, %", &CellResults::OneEffect::right,
-                          {plot::Rule{"90 %, bar of every effect of moderate size", 90.0}},
-                          "Share of the trials that hid the effect in which it was named." + points));
-  out.push_back(by_effect(
-      known, "Coverage by effect", "95 % interval holds the truth, %", &CellResults::OneEffect::covered,
-      {plot::Rule{"92 % and 98 %, bars of all effects together", 92.0},
-       plot::Rule{"92 % and 98 %, bars of all effects together", 98.0}},
-      "Where the effect was named: share of the intervals of its first parameter that hold the truth." +
-          points));
+  for (const CellResults* cell : known) out.push_back(by_effect(*cell));
   out.push_back(detection(known));
   out.push_back(parameter_errors(known));
   out.push_back(gaps(known));

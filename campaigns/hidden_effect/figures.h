@@ -6,8 +6,8 @@
 
 namespace fatmc::hidden_effect {
 
-/// A confusion matrix a cell with one known effect, then what all cells share: names and coverage by effect, detection by size, errors
-/// of the parameters, the gap before and after.
+/// A confusion matrix a cell with one effect; names and coverage by effect a cell whose effects are candidates; then what those
+/// cells share: detection by size, errors of the parameters, the gap before and after.
 Result<std::vector<StudyFigure>> figures(const CampaignSpec& spec, const RowSource& rows);
 
 /// Of one cell: answers by kind of effect (ids, whatever the axis or surface), each row the shares of the trials that hid it.
