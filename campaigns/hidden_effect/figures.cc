@@ -69,7 +69,7 @@ StudyFigure by_effect(const CellResults& cell) {
   panel.marks.emplace_back(plot::Rule{"90 %, bar of every name at moderate size", 90.0});
   plot::Figure figure;
   figure.title = "Effect by effect, " + cell.name;
-  figure.panel_width = 120.0 + 16.0 * static_cast<double>(names.size());
+  figure.panel_width = std::max(420.0, 120.0 + 16.0 * static_cast<double>(names.size()));
   figure.panel_height = 420.0;
   figure.panels = {std::move(panel)};
   return {"Effect by effect, " + cell.name,
