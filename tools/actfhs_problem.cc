@@ -8,6 +8,7 @@
 #include "core/base/text.h"
 #include "core/handling/control_loop.h"
 #include "core/handling/modes.h"
+#include "core/subspace/eigenvalues.h"
 
 namespace fatmc::fit {
 namespace {
@@ -27,11 +28,11 @@ struct Row {
 /// In the order of the values. What stands after kFitted rows below is fixed.
 constexpr std::array kPriors = {
     Row{"X_u", -0.03, 0.01},     Row{"X_w", 0.03, 0.02},  Row{"Z_u", -0.05, 0.03},
-    Row{"Z_w", -0.8, 0.15},      Row{"M_u", 0.02, 0.03},  Row{"M_w", 0.06, 0.03},
-    Row{"M_q", -0.2, 0.2},       Row{"M_a", 24.0, 6.0},   Row{"K_a", 0.0015, 0.0005},
-    Row{"Y_v", -0.055, 0.02},    Row{"L_v", -0.1, 0.03},  Row{"L_p", 0.0, 0.3},
-    Row{"L_r", 0.1, 0.1},        Row{"N_v", 0.065, 0.02}, Row{"N_p", -0.15, 0.1},
-    Row{"N_r", -0.1, 0.05},      Row{"L_b", 160.0, 20.0}, Row{"tau", 0.035, 0.005},
+    Row{"Z_w", -0.8, 0.15},      Row{"M_u", 0.014, 0.01}, Row{"M_w", 0.08, 0.03},
+    Row{"M_q", -0.2, 0.2},       Row{"M_a", 10.5, 3.0},   Row{"K_a", 0.00028, 0.0001},
+    Row{"Y_v", -0.08, 0.02},     Row{"L_v", -0.2, 0.03},  Row{"L_p", 0.0, 0.3},
+    Row{"L_r", 0.05, 0.1},       Row{"N_v", 0.13, 0.02},  Row{"N_p", -0.15, 0.1},
+    Row{"N_r", -0.5, 0.1},       Row{"L_b", 160.0, 20.0}, Row{"tau", 0.035, 0.005},
     Row{"K_b", 0.00075, 0.0002}, Row{"omega", 12.1, 0.3}, Row{"damping", 0.025, 0.01},
     Row{"f_b", -60.0, 20.0},     Row{"f_p", -40.0, 10.0}, Row{"L_x", 37.0, 10.0},
     Row{"L_d", 2.5, 2.0},        Row{"b_d", -0.6, 0.2},   Row{"ci", 19.0, 3.0},
@@ -92,20 +93,24 @@ ContinuousModel vehicle(const ContinuousModel& bare, PublishedMode::Vehicle kind
   return kind == PublishedMode::Vehicle::stabilized ? stabilized_vehicle(bare) : optimized_vehicle(bare);
 }
 
-/// Of the eigenvalues with that sign of the imaginary part, the nearest.
-std::complex<double> nearest(const ContinuousModel& model, std::complex<double> wanted) {
+/// Of the eigenvalues of an axis with that sign of the imaginary part, the nearest. The axis counts: with the
+/// SCAS the Dutch roll lies near the phugoid, and would be fitted in its place.
+std::complex<double> nearest(const ContinuousModel& model, std::complex<double> wanted,
+                             PublishedMode::Axis axis) {
   std::complex<double> best(1e3, 1e3);
-  const auto modes = modes_of(model.a);
-  if (!modes) return best;
-  for (const Mode& mode : *modes) {
-    if (std::abs(mode.s - wanted) < std::abs(best - wanted)) best = mode.s;
+  const auto pairs = eigenpairs_of(model.a);
+  if (!pairs) return best;
+  for (Eigen::Index i = 0; i < pairs->values.size(); ++i) {
+    const std::complex<double> s = pairs->values(i);
+    const Eigen::ArrayXd shape = pairs->vectors.col(i).cwiseAbs().array();
+    const bool pitch = shape(q) + shape(theta) > shape(p) + shape(r) + shape(phi);
+    if (s.imag() < 0.0 || pitch != (axis == PublishedMode::Axis::pitch)) continue;
+    if (std::abs(s - wanted) < std::abs(best - wanted)) best = s;
   }
   return best;
 }
 
 const std::complex<double> kBareLeadLag{-0.36, 12.0};
-/// Level 1 in pitch with the SCAS (H 5.2) needs a damping of 0.35 here, too: this one has 0.38.
-const std::complex<double> kStabilizedPitch{-2.0, 4.9};
 
 std::string matrix_lines(const char* name, const Eigen::MatrixXd& matrix) {
   std::string out = std::string(name) + " = [\n";
@@ -125,11 +130,12 @@ std::string matrix_lines(const char* name, const Eigen::MatrixXd& matrix) {
 
 const std::vector<PublishedMode>& actfhs_published_modes() {
   using enum PublishedMode::Vehicle;
-  static const std::vector<PublishedMode> modes = {{"phugoid", bare, 19.2, -0.16},
-                                                   {"phugoid", stabilized, 4.9, 0.4},
-                                                   {"roll/flap", stabilized, 0.45, 0.32},
-                                                   {"lead-lag", stabilized, 0.55, 0.03},
-                                                   {"roll/flap", optimized, 0.43, 0.58}};
+  using enum PublishedMode::Axis;
+  static const std::vector<PublishedMode> modes = {{"phugoid", bare, pitch, 19.2, -0.16},
+                                                   {"phugoid", stabilized, pitch, 4.9, 0.4},
+                                                   {"roll/flap", stabilized, roll, 0.45, 0.32},
+                                                   {"lead-lag", stabilized, roll, 0.55, 0.03},
+                                                   {"roll/flap", optimized, roll, 0.43, 0.58}};
   return modes;
 }
 
@@ -154,22 +160,18 @@ ValueProblem actfhs_problem() {
   }
   out.targets.push_back({"bare lead-lag re", kBareLeadLag.real(), 0.2});
   out.targets.push_back({"bare lead-lag im", kBareLeadLag.imag(), 0.2});
-  out.targets.push_back({"pitch/flap re", kStabilizedPitch.real(), 0.02});
-  out.targets.push_back({"pitch/flap im", kStabilizedPitch.imag(), 0.1});
   out.model = [](const Eigen::VectorXd& values) {
     const ContinuousModel bare = actfhs_model(values);
     std::vector<double> reached;
     for (const PublishedMode& mode : actfhs_published_modes()) {
       const std::complex<double> s =
-          nearest(vehicle(bare, mode.vehicle), mode_of(mode.period_s, mode.damping).s);
+          nearest(vehicle(bare, mode.vehicle), mode_of(mode.period_s, mode.damping).s, mode.axis);
       reached.push_back(s.real());
       reached.push_back(s.imag());
     }
-    for (const std::complex<double>& s :
-         {nearest(bare, kBareLeadLag), nearest(stabilized_vehicle(bare), kStabilizedPitch)}) {
-      reached.push_back(s.real());
-      reached.push_back(s.imag());
-    }
+    const std::complex<double> lead_lag = nearest(bare, kBareLeadLag, PublishedMode::Axis::roll);
+    reached.push_back(lead_lag.real());
+    reached.push_back(lead_lag.imag());
     return Eigen::VectorXd(
         Eigen::Map<const Eigen::VectorXd>(reached.data(), static_cast<Eigen::Index>(reached.size())));
   };

@@ -16,8 +16,9 @@
 //
 // SI and rad, controls d_x, d_y, d_p, d_0 in per cent. Constraints: the five modes of H 5.1 (bare phugoid;
 // phugoid, roll/flap, lead-lag with H 14; roll/flap with H 15 too). The bare lead-lag mode near 12 rad/s
-// (H 4.3) and a pitch/flap mode well damped by the SCAS are targets. Priors are the order of magnitude of such
-// helicopters' derivatives, chosen so that the modes come near; they are no figures of the ACT/FHS.
+// (H 4.3) is a target. Priors are the order of magnitude of such helicopters' derivatives, those of the yaw axis for
+// a Dutch roll of 3 s that is damped and a stable spiral, chosen so that the modes come near; they are no figures of
+// the ACT/FHS.
 #pragma once
 
 #include <string>
@@ -41,6 +42,7 @@ std::string actfhs_toml(const ValueFit& fit);
 struct PublishedMode {
   std::string name;
   enum class Vehicle { bare, stabilized, optimized } vehicle;
+  enum class Axis { pitch, roll } axis;
   double period_s, damping;
 };
 const std::vector<PublishedMode>& actfhs_published_modes();

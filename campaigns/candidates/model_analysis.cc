@@ -16,13 +16,21 @@ namespace fatmc::candidates {
 namespace {
 
 constexpr double kFeet = 1.0 / 0.3048, kDegrees = 180.0 / std::numbers::pi;
-constexpr Eigen::Index kRollRate = 3;
 
 /// H (9): velocities in ft/s, rates in deg/s, attitudes in deg.
 Eigen::RowVectorXd rms_units() {
   Eigen::RowVectorXd out(kOutputs);
   out << kFeet, kFeet, kFeet, kDegrees, kDegrees, kDegrees, kDegrees, kDegrees;
   return out;
+}
+
+/// H (10), corrected; below 0 counts as 0.
+Result<double> agreement(const Eigen::Ref<const Eigen::VectorXd>& measured,
+                         const Eigen::Ref<const Eigen::VectorXd>& simulated) {
+  const auto count = static_cast<std::size_t>(measured.size());
+  const auto index = index_of_agreement({measured.data(), count}, {simulated.data(), count});
+  if (!index) return fail("an output of the validation maneuvers never moves");
+  return std::max(0.0, *index);
 }
 
 }  // namespace
@@ -32,15 +40,13 @@ double frequency_rad_s(int index) {
   return low * std::pow(high / low, static_cast<double>(index) / (kFrequencies - 1));
 }
 
-Result<Validation> validate(const DiscreteModel& model, std::span<const Maneuver> maneuvers) {
-  const auto modal = modal_model(model);
-  if (!modal) return fail(modal.error());
+Result<Validation> validate(const ModalModel& modal, std::span<const Maneuver> maneuvers) {
   Eigen::Index samples = 0;
   for (const Maneuver& maneuver : maneuvers) samples += maneuver.samples();
   Eigen::MatrixXd measured(samples, kOutputs), simulated(samples, kOutputs);
   Eigen::Index row = 0;
   for (const Maneuver& maneuver : maneuvers) {
-    const auto fit = fit_maneuver(*modal, maneuver);
+    const auto fit = fit_maneuver(modal, maneuver);
     if (!fit) return fail(fit.error());
     measured.middleRows(row, maneuver.samples()) = maneuver.outputs;
     simulated.middleRows(row, maneuver.samples()) = fit->outputs;
@@ -48,14 +54,26 @@ Result<Validation> validate(const DiscreteModel& model, std::span<const Maneuver
   }
   std::vector<double> indices;
   for (Eigen::Index i = 0; i < kOutputs; ++i) {
-    const auto count = static_cast<std::size_t>(samples);
-    const auto index = index_of_agreement({measured.col(i).data(), count}, {simulated.col(i).data(), count});
-    if (!index) return fail("an output of the validation maneuvers never moves");
-    indices.push_back(std::max(0.0, *index));
+    const auto index = agreement(measured.col(i), simulated.col(i));
+    if (!index) return fail(index.error());
+    indices.push_back(*index);
   }
   const Eigen::RowVectorXd units = rms_units();
-  return Validation{overall_index_of_agreement(indices),
-                    rms_error(measured * units.asDiagonal(), simulated * units.asDiagonal())};
+  Validation out;
+  out.agreement = overall_index_of_agreement(indices);
+  out.rms = rms_error(measured * units.asDiagonal(), simulated * units.asDiagonal());
+  if (maneuvers.size() > kRollManeuver) {
+    Eigen::Index first = 0;
+    for (std::size_t j = 0; j < kRollManeuver; ++j) first += maneuvers[j].samples();
+    const Eigen::Index count = maneuvers[kRollManeuver].samples();
+    const Eigen::VectorXd rate = measured.col(kRollRate).segment(first, count),
+                          roll = simulated.col(kRollRate).segment(first, count);
+    const auto index = agreement(rate, roll);
+    if (!index) return fail(index.error());
+    out.roll_agreement = *index;
+    out.roll_rms = rms_error(rate * kDegrees, roll * kDegrees);
+  }
+  return out;
 }
 
 std::vector<Mode> truth_modes(const DiscreteModel& truth, double rate_hz) {

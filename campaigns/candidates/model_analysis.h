@@ -17,10 +17,16 @@ namespace fatmc::candidates {
 struct Validation {
   double agreement = 0.0;  ///< overall d1, H (11), each output over all maneuvers one after the other
   double rms = 0.0;        ///< H (9), ft/s, deg/s, deg
+  /// Roll rate of maneuver kRollManeuver alone: d1 of H (10) and deg/s (H Figs. 2 and 3).
+  double roll_agreement = 0.0, roll_rms = 0.0;
 };
+/// Its output.
+inline constexpr Eigen::Index kRollRate = 3;
+/// The first multistep of the lateral control.
+inline constexpr std::size_t kRollManeuver = 2;
 
 /// Each maneuver with its own x0 and y0 (H 6-8). Fails as fit_maneuver does.
-Result<Validation> validate(const DiscreteModel& model, std::span<const Maneuver> maneuvers);
+Result<Validation> validate(const ModalModel& modal, std::span<const Maneuver> maneuvers);
 
 struct ModelAnalysis {
   std::array<double, kTrackedModes.size()> period_s{}, damping{};

@@ -15,12 +15,45 @@ const std::vector<double>& need(const TrialRow& row, std::string_view name) {
   return *values;
 }
 
+/// Takes modal models one after the other from the arrays of a row.
+class ModelReader {
+ public:
+  explicit ModelReader(const TrialRow& row)
+      : eigenvalues_(need(row, kEigenvalues)), b_(need(row, kModalB)), c_(need(row, kModalC)) {}
+
+  ModalModel next(Eigen::Index order) {
+    ModalModel out;
+    out.eigenvalues.resize(order);
+    out.model.a = Eigen::MatrixXd::Zero(order, order);
+    const double* parts = eigenvalues_.data() + 2 * states_;
+    for (Eigen::Index i = 0; i < order; ++i) {
+      out.eigenvalues(i) = {parts[i], parts[order + i]};
+      out.model.a(i, i) = parts[i];
+      // Columns of the basis are Re v, Im v of a pair: [re im; -im re].
+      if (parts[order + i] > 0.0 && i + 1 < order) {
+        out.model.a(i, i + 1) = parts[order + i];
+        out.model.a(i + 1, i) = -parts[order + i];
+      }
+    }
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    out.model.b = Eigen::Map<const RowMajor>(b_.data() + states_ * kInputs, order, kInputs);
+    out.model.c = Eigen::Map<const RowMajor>(c_.data() + states_ * kOutputs, kOutputs, order);
+    states_ += order;
+    return out;
+  }
+
+ private:
+  const std::vector<double>&eigenvalues_, &b_, &c_;
+  Eigen::Index states_ = 0;  // of the models before
+};
+
 void add_analyses(const TrialRow& row, std::size_t first, ModelTable& table) {
   const auto& analysed = need(row, kAnalysed);
   const auto &period = need(row, kPeriod), &damping = need(row, kDamping), &level = need(row, kLevel),
              &approval = need(row, kApproval), &artifacts = need(row, kArtifacts),
              &magnitude = need(row, kMagnitude);
   constexpr std::size_t modes = kTrackedModes.size(), judged = kJudged.size(), grid = kFrequencies;
+  ModelReader models(row);
   for (std::size_t k = 0; k < analysed.size(); ++k) {
     ModelAnalysisRow out;
     for (std::size_t i = 0; i < modes; ++i) {
@@ -34,8 +67,9 @@ void add_analyses(const TrialRow& row, std::size_t first, ModelTable& table) {
     out.artifacts = static_cast<int>(artifacts[k]);
     const auto begin = magnitude.begin() + static_cast<std::ptrdiff_t>(k * grid);
     out.magnitude_db.assign(begin, begin + static_cast<std::ptrdiff_t>(grid));
-    table.models[first + static_cast<std::size_t>(analysed[k])].analysis =
-        static_cast<int>(table.analyses.size());
+    ModelRow& model = table.models[first + static_cast<std::size_t>(analysed[k])];
+    out.model = models.next(model.order);
+    model.analysis = static_cast<int>(table.analyses.size());
     table.analyses.push_back(std::move(out));
   }
 }
@@ -64,11 +98,12 @@ ModelTable read_models(std::uint32_t cell, const RowSource& rows) {
     const std::size_t first = out.models.size();
     const auto &past = need(row, kPast), &future = need(row, kFuture), &order = need(row, kOrder),
                &state = need(row, kState), &agreement = need(row, kAgreement), &rms = need(row, kRms),
-               &norm = need(row, kNorm);
+               &norm = need(row, kNorm), &roll_agreement = need(row, kRollAgreement),
+               &roll_rms = need(row, kRollRms);
     for (std::size_t i = 0; i < past.size(); ++i) {
       out.models.push_back({static_cast<int>(past[i]), static_cast<int>(future[i]),
                             static_cast<int>(order[i]), static_cast<ModelState>(static_cast<int>(state[i])),
-                            agreement[i], rms[i], norm[i], -1});
+                            agreement[i], rms[i], norm[i], roll_agreement[i], roll_rms[i], -1});
     }
     add_analyses(row, first, out);
     out.not_identified += metric(row, kNotIdentified);

@@ -8,6 +8,7 @@
 #include "campaigns/base/study.h"
 #include "campaigns/candidates/candidates_spec.h"
 #include "campaigns/candidates/row_arrays.h"
+#include "core/subspace/discrete_model.h"
 
 namespace fatmc::candidates {
 
@@ -16,13 +17,15 @@ struct ModelAnalysisRow {
   std::array<int, kJudged.size()> level{}, approval{};
   int artifacts = 0;
   std::vector<double> magnitude_db;
+  ModalModel model;  ///< discrete, as it was validated
 };
 
 struct ModelRow {
   int past = 0, future = 0, order = 0;
   ModelState state = ModelState::ok;
   double agreement = 0.0, rms = 0.0, norm = 0.0;
-  int analysis = -1;  ///< index into ModelTable::analyses, or -1
+  double roll_agreement = 0.0, roll_rms = 0.0;  ///< kRollAgreement, kRollRms
+  int analysis = -1;                            ///< index into ModelTable::analyses, or -1
 };
 
 struct ModelTable {
@@ -30,6 +33,12 @@ struct ModelTable {
   std::vector<ModelAnalysisRow> analyses;
   std::uint64_t trials = 0, failed_trials = 0;
   double not_identified = 0.0, not_validated = 0.0, not_continuous = 0.0;
+
+  /// Of a model by its index in `models`; null where it was not analysed.
+  [[nodiscard]] const ModelAnalysisRow* analysis_of(std::size_t model) const {
+    const int at = models[model].analysis;
+    return at < 0 ? nullptr : &analyses[static_cast<std::size_t>(at)];
+  }
 };
 
 ModelTable read_models(std::uint32_t cell, const RowSource& rows);

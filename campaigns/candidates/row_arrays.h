@@ -9,9 +9,11 @@ namespace fatmc::candidates {
 
 // A value a model, in the order past (descending), future, order (both ascending).
 inline constexpr std::string_view kPast = "past", kFuture = "future", kOrder = "order";
-inline constexpr std::string_view kState = "state";    ///< a ModelState
-inline constexpr std::string_view kAgreement = "d1";   ///< overall index of agreement, H (11); 0 without
-inline constexpr std::string_view kRms = "j_rms";      ///< H (9), ft/s, deg/s, deg; 0 without
+inline constexpr std::string_view kState = "state";   ///< a ModelState
+inline constexpr std::string_view kAgreement = "d1";  ///< overall index of agreement, H (11); 0 without
+inline constexpr std::string_view kRms = "j_rms";     ///< H (9), ft/s, deg/s, deg; 0 without
+/// The same of the roll rate alone in the first lateral multistep (H Figs. 2, 3); deg/s.
+inline constexpr std::string_view kRollAgreement = "roll_d1", kRollRms = "roll_rms";
 inline constexpr std::string_view kNorm = "norm";      ///< spectral norm of A_K^p; 0 without
 inline constexpr std::string_view kLambda = "lambda";  ///< a value a past window
 
@@ -27,6 +29,10 @@ inline constexpr std::string_view kApproval =
 inline constexpr std::string_view kArtifacts = "artifacts";  ///< number of resonances the truth does not have
 inline constexpr std::string_view kMagnitude =
     "p_delta_y_db";  ///< kFrequencies values, deg/s per per cent in dB
+
+// The model itself in real modal form (modal_model of discrete_model.h), n its order: eigenvalues of A, n real
+// parts, then n imaginary ones; B, n x 4, and C, 8 x n, row by row.
+inline constexpr std::string_view kEigenvalues = "eigenvalues", kModalB = "modal_b", kModalC = "modal_c";
 
 // Metrics: how many models, and how many failed at which step.
 inline constexpr std::string_view kModels = "models", kNotIdentified = "not_identified",

@@ -26,6 +26,8 @@ class BlockResults {
     agreement_.push_back(0.0);
     rms_.push_back(0.0);
     norm_.push_back(0.0);
+    roll_agreement_.push_back(0.0);
+    roll_rms_.push_back(0.0);
     if (lambda_past_ != member.past && model) {
       lambda_past_ = member.past;
       lambda_.push_back(model->lambda);
@@ -33,16 +35,24 @@ class BlockResults {
     if (!model) return failed(ModelState::not_identified, member, model.error());
     norm_.back() = model->predictor_norm;
     const DiscreteModel discrete{model->a, model->b, model->c};
-    const auto validation = validate(discrete, multisteps_);
+    const auto modal = modal_model(discrete);
+    if (!modal) return failed(ModelState::not_validated, member, modal.error());
+    const auto validation = validate(*modal, multisteps_);
     if (!validation) return failed(ModelState::not_validated, member, validation.error());
     agreement_.back() = validation->agreement;
     rms_.back() = validation->rms;
+    roll_agreement_.back() = validation->roll_agreement;
+    roll_rms_.back() = validation->roll_rms;
     const bool selected = std::any_of(spec_.selections.begin(), spec_.selections.end(),
                                       [&](const Selection& s) { return s.order == member.order; });
-    if (selected) add_analysis(discrete, member);
+    if (selected) add_analysis(discrete, *modal, member);
   }
 
   void write(TrialRow& row) {
+    const int failures = not_identified_ + not_validated_ + not_continuous_;
+    if (failures > 0)
+      row.detail = std::to_string(failures) + " of " + std::to_string(past_.size()) + " models failed; " +
+                   first_failure_;
     row.metrics = {{std::string(kModels), static_cast<double>(past_.size())},
                    {std::string(kNotIdentified), static_cast<double>(not_identified_)},
                    {std::string(kNotValidated), static_cast<double>(not_validated_)},
@@ -54,7 +64,8 @@ class BlockResults {
     array(kAgreement, agreement_), array(kRms, rms_), array(kNorm, norm_), array(kLambda, lambda_);
     array(kAnalysed, analysed_), array(kPeriod, period_), array(kDamping, damping_), array(kLevel, level_);
     array(kApproval, approval_), array(kArtifacts, artifacts_), array(kMagnitude, magnitude_);
-    row.detail = first_failure_;
+    array(kRollAgreement, roll_agreement_), array(kRollRms, roll_rms_);
+    array(kEigenvalues, eigenvalues_), array(kModalB, modal_b_), array(kModalC, modal_c_);
   }
 
  private:
@@ -66,12 +77,12 @@ class BlockResults {
 
   void note(const FamilyMember& member, const Error& error) {
     if (!first_failure_.empty()) return;
-    first_failure_ = "first failure at p " + std::to_string(member.past) + ", f " +
+    first_failure_ = "the first at p " + std::to_string(member.past) + ", f " +
                      std::to_string(member.future) + ", n " + std::to_string(member.order) + ": " +
                      error.message;
   }
 
-  void add_analysis(const DiscreteModel& discrete, const FamilyMember& member) {
+  void add_analysis(const DiscreteModel& discrete, const ModalModel& modal, const FamilyMember& member) {
     const auto analysis = analyse(discrete, spec_.truth.rate_hz, truth_);
     if (!analysis) {
       ++not_continuous_;
@@ -84,6 +95,19 @@ class BlockResults {
     approval_.insert(approval_.end(), analysis->approval.begin(), analysis->approval.end());
     artifacts_.push_back(analysis->artifacts);
     magnitude_.insert(magnitude_.end(), analysis->magnitude_db.begin(), analysis->magnitude_db.end());
+    add_model(modal);
+  }
+
+  void add_model(const ModalModel& modal) {
+    const auto add = [](std::vector<double>& to, const auto& matrix) {
+      for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+        for (Eigen::Index j = 0; j < matrix.cols(); ++j) to.push_back(matrix(i, j));
+      }
+    };
+    add(eigenvalues_, modal.eigenvalues.real());
+    add(eigenvalues_, modal.eigenvalues.imag());
+    add(modal_b_, modal.model.b);
+    add(modal_c_, modal.model.c);
   }
 
   const CandidatesSpec& spec_;
@@ -91,6 +115,7 @@ class BlockResults {
   std::span<const Mode> truth_;
   std::vector<double> past_, future_, order_, state_, agreement_, rms_, norm_, lambda_;
   std::vector<double> analysed_, period_, damping_, level_, approval_, artifacts_, magnitude_;
+  std::vector<double> roll_agreement_, roll_rms_, eigenvalues_, modal_b_, modal_c_;
   int lambda_past_ = 0, not_identified_ = 0, not_validated_ = 0, not_continuous_ = 0;
   std::string first_failure_;
 };

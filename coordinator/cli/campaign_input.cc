@@ -45,15 +45,16 @@ Status apply(const SpecChanges& changes, Tree& tree, const CampaignSpec& decoded
 }
 
 // [size.small] makes a campaign cheap: `repetitions` is the most of a cell, and what its table `set` gives is
-// set in every cell. The size that is not asked for leaves no trace. `--size full` of a spec without it is
+// set in every cell. Sizes that are not asked for leave no trace. `--size full` of a spec without it is
 // the spec as it stands.
 Status apply_size(const std::string& size, Tree& tree) {
   const Tree* sizes = tree.find("size");
   const Tree* own = sizes != nullptr && !size.empty() ? sizes->find(size) : nullptr;
   if (own == nullptr) {
-    if (size == "small") {
-      return fail(Error{tree.file, 0, "--size",
-                        "the spec has no [size.small], write one with repetitions = N or use --scale"});
+    if (!size.empty() && size != "full") {
+      return fail(
+          Error{tree.file, 0, "--size",
+                "the spec has no [size." + size + "], write one with repetitions = N or use --scale"});
     }
     tree.erase("size");
     return {};
@@ -91,8 +92,15 @@ void add_spec_options(CLI::App& command, SpecChanges& changes) {
   command.add_option("--scale", changes.scale, "multiplies repetitions")->check(CLI::PositiveNumber);
   command
       .add_option("--size", changes.size,
-                  "small or full: a size that the spec gives by [size.small] or [size.full]")
-      ->check(CLI::IsMember({"small", "full"}));
+                  "a size that the spec gives, [size.small] for instance; full: the spec as it stands")
+      ->check(CLI::Validator(
+          [](const std::string& name) {
+            const bool word = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+              return std::isalnum(c) != 0 || c == '_' || c == '-';
+            });
+            return word ? std::string() : "not the name of a size";
+          },
+          "NAME"));
   command.add_option("--seed", changes.seed, "seed, instead of the spec's")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
 }

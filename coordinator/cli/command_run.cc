@@ -1,4 +1,5 @@
 // fatmc run: a coordinator and its workers on this machine, until the campaign is done.
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <set>
@@ -37,12 +38,27 @@ std::string resume_command(const RunOptions& options, const std::string& databas
   return shell_line(words);
 }
 
+// A shard of more parts than a cell has repetitions may be empty: a mistake in i/N, and nothing to merge.
+Status has_trials(const Shard& shard, const CampaignSpec& spec) {
+  std::uint64_t most = 0;
+  for (const Cell& cell : spec.cells) {
+    const auto [first, last] = shard.range(cell.repetitions);
+    if (first < last) return {};
+    most = std::max<std::uint64_t>(most, cell.repetitions);
+  }
+  return fail("--shard " + std::to_string(shard.number) + "/" + std::to_string(shard.count) +
+              " holds no trial: no cell has more than " + std::to_string(most) +
+              " repetitions, split it in so many parts at most");
+}
+
 // [stop] looks at trials 0 ... n-1 of a cell, of which a shard has a part.
 Result<Shard> shard_of(const RunOptions& options, const CampaignSpec& spec) {
   if (options.shard.empty()) return Shard{};
   const Result<Shard> shard = parse_shard(options.shard);
+  if (!shard) return shard;
+  if (Status status = has_trials(*shard, spec); !status) return fail(status.error());
   const Tree* stop = spec.tree.find("stop");
-  if (!shard || shard->count == 1 || stop == nullptr) return shard;
+  if (shard->count == 1 || stop == nullptr) return shard;
   return fail(Error{stop->file, stop->line, "stop",
                     "needs all trials of a cell, and --shard " + options.shard +
                         " has a part of them; leave out one of the two"});
@@ -133,7 +149,8 @@ Exit run(const RunOptions& options) {
 void add_run_command(CLI::App& app, Exit& exit) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "runs a campaign on this machine and prints its tables");
-  command->alias("candidates");  // the same words for the study of many PBSIDopt models: fatmc candidates SPEC
+  command->alias(
+      "candidates");  // the same words for the study of many PBSIDopt models: fatmc candidates SPEC
   command->footer(
       "A database that exists is resumed; Ctrl-C stops cleanly (exit code 3), the same command goes on.\n"
       "Example: fatmc run campaigns/coverage/spec.toml --trials 200 --workers 2\n"

@@ -16,6 +16,21 @@ void sort_by_speed(std::vector<Mode>& modes) {
                    [](const Mode& one, const Mode& other) { return std::abs(one.s) < std::abs(other.s); });
 }
 
+/// Poles of one element of the transfer matrix with their residues: sum r_i / (s - s_i).
+struct Residues {
+  Eigen::VectorXcd poles, residues;
+};
+
+Result<Residues> residues_of(const ContinuousModel& model, Eigen::Index output, Eigen::Index input) {
+  const auto pairs = eigenpairs_of(model.a);
+  if (!pairs) return fail("A is not finite");
+  const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(pairs->vectors);
+  if (!(lu.rcond() > 1e-13)) return fail("A has no basis of eigenvectors");
+  const Eigen::VectorXcd excited = lu.solve(model.b.col(input).cast<std::complex<double>>());
+  const Eigen::RowVectorXcd seen = model.c.row(output) * pairs->vectors;
+  return Residues{pairs->values, seen.transpose().cwiseProduct(excited)};
+}
+
 }  // namespace
 
 double Mode::period_s() const { return 2.0 * std::numbers::pi / s.imag(); }
@@ -53,25 +68,31 @@ std::optional<Mode> nearest_mode(std::span<const Mode> modes, const Mode& wanted
 
 Result<std::vector<ModeShare>> mode_shares(const ContinuousModel& model, Eigen::Index output,
                                            Eigen::Index input) {
-  const auto pairs = eigenpairs_of(model.a);
-  if (!pairs) return fail("A is not finite");
-  const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(pairs->vectors);
-  if (!(lu.rcond() > 1e-13)) return fail("A has no basis of eigenvectors");
-  const Eigen::VectorXcd excited = lu.solve(model.b.col(input).cast<std::complex<double>>());
-  const Eigen::RowVectorXcd seen = model.c.row(output) * pairs->vectors;
+  const auto found = residues_of(model, output, input);
+  if (!found) return fail(found.error());
   std::vector<ModeShare> out;
   double largest = 0.0;
-  for (Eigen::Index i = 0; i < excited.size(); ++i) {
-    const std::complex<double> s = pairs->values(i);
+  for (Eigen::Index i = 0; i < found->poles.size(); ++i) {
+    const std::complex<double> s = found->poles(i);
     if (s.imag() < 0.0) continue;
     const double decay = std::max(std::abs(s.real()), std::numeric_limits<double>::min());
-    out.push_back({{s}, std::abs(seen(i) * excited(i)) / decay, 0.0});
+    out.push_back({{s}, std::abs(found->residues(i)) / decay, 0.0});
     largest = std::max(largest, out.back().peak);
   }
   for (ModeShare& mode : out) mode.share = largest > 0.0 ? mode.peak / largest : 0.0;
   std::stable_sort(out.begin(), out.end(), [](const ModeShare& one, const ModeShare& other) {
     return std::abs(one.mode.s) < std::abs(other.mode.s);
   });
+  return out;
+}
+
+Result<std::vector<double>> impulse_response(const ContinuousModel& model, Eigen::Index output,
+                                             Eigen::Index input, std::span<const double> times_s) {
+  const auto found = residues_of(model, output, input);
+  if (!found) return fail(found.error());
+  std::vector<double> out;
+  for (const double t : times_s)
+    out.push_back((found->residues.array() * (found->poles.array() * t).exp()).sum().real());
   return out;
 }
 

@@ -45,4 +45,8 @@ struct ModeShare {
 Result<std::vector<ModeShare>> mode_shares(const ContinuousModel& model, Eigen::Index output,
                                            Eigen::Index input);
 
+/// C e^(At) B of that element at the given times, s: the response to an impulse of area 1. Fails as mode_shares does.
+Result<std::vector<double>> impulse_response(const ContinuousModel& model, Eigen::Index output,
+                                             Eigen::Index input, std::span<const double> times_s);
+
 }  // namespace fatmc

@@ -56,6 +56,12 @@ class Engine(engine_test.Engine):
         self.assertIn("1 cells, 50 trials", self.done("run", "spec.toml", "--dry-run", "--size", "full"))
         self.spec(CELL.format(n=50, rest=""), "plain.toml")
         self.refused("the spec has no [size.small]", "run", "plain.toml", "--size", "small")
+        self.refused("the spec has no [size.tiny]", "run", "spec.toml", "--size", "tiny")
+
+    def test_a_shard_without_a_trial_is_refused(self):
+        self.spec(CELL.format(n=2, rest=""))
+        self.refused("--shard 1/3 holds no trial", "run", "spec.toml", "--shard", "1/3", "--db", "s.db")
+        self.assertFalse(os.path.exists(self.path("s.db")))
 
     def test_drawn_parameters_are_stored_and_the_same_for_any_number_of_workers(self):
         self.spec(CELL.format(n=40, rest="") + INPUTS + DRAWN)

@@ -45,5 +45,28 @@ TEST(ActFhs, FittedDerivativesHaveThePhysicalSigns) {
   EXPECT_GT(value("damping"), 0.0);
 }
 
+/// The oscillation with the largest share of a response.
+Mode leading_oscillation(const ContinuousModel& model, Eigen::Index output, Eigen::Index input) {
+  const auto shares = mode_shares(model, output, input);
+  EXPECT_TRUE(shares.has_value());
+  ModeShare best;
+  for (const ModeShare& mode : *shares) {
+    if (mode.mode.oscillatory() && mode.peak > best.peak) best = mode;
+  }
+  return best.mode;
+}
+
+// The Dutch roll with the SCAS has a similar period and damping. A fit to the nearest mode takes it for the phugoid.
+TEST(ActFhs, ThePhugoidWithTheScasIsThatOfThePitchResponse) {
+  const ContinuousModel bare = actfhs_model(shipped_fit().values);
+  constexpr Eigen::Index pitch_rate = 4, longitudinal = 0, yaw_rate = 5, pedal = 2;
+  const Mode phugoid = leading_oscillation(stabilized_vehicle(bare), pitch_rate, longitudinal);
+  EXPECT_NEAR(phugoid.period_s(), 4.9, 1e-3);
+  EXPECT_NEAR(phugoid.damping(), 0.4, 1e-4);
+  const Mode dutch_roll = leading_oscillation(bare, yaw_rate, pedal);
+  EXPECT_NEAR(dutch_roll.period_s(), 3.1, 0.1);
+  EXPECT_NEAR(dutch_roll.damping(), 0.15, 0.02);
+}
+
 }  // namespace
 }  // namespace fatmc::fit

@@ -137,5 +137,36 @@ TEST(Requirements, BoundariesOfCs27) {
   EXPECT_TRUE(meets_cs27(mode_of(7.0, 0.001), PilotCrew::two));
 }
 
+TEST(ImpulseResponse, OfASecondOrderSystemIsTheDampedSine) {
+  // 1 / (s^2 + 2 D w s + w^2): e^(-D w t) sin(w_d t) / w_d
+  const double w = 3.0, d = 0.2, damped = w * std::sqrt(1.0 - d * d);
+  ContinuousModel model;
+  model.a.resize(2, 2);
+  model.a << 0.0, 1.0, -w * w, -2.0 * d * w;
+  model.b = Eigen::Vector2d(0.0, 1.0);
+  model.c = Eigen::RowVector2d(1.0, 0.0);
+  model.d = Eigen::MatrixXd::Zero(1, 1);
+  const std::vector<double> times = {0.0, 0.3, 1.7};
+  const auto response = impulse_response(model, 0, 0, times);
+  ASSERT_TRUE(response.has_value());
+  for (std::size_t i = 0; i < times.size(); ++i)
+    EXPECT_NEAR((*response)[i], std::exp(-d * w * times[i]) * std::sin(damped * times[i]) / damped, 1e-14);
+}
+
+TEST(ImpulseResponse, AgreesWithARungeKuttaIntegration) {
+  const ContinuousModel model = some_model(false);
+  const std::vector<double> times = {0.5};
+  const auto response = impulse_response(model, 1, 1, times);
+  ASSERT_TRUE(response.has_value());
+  Eigen::VectorXd x = model.b.col(1);
+  const double h = 1e-3;
+  for (int k = 0; k < 500; ++k) {
+    const Eigen::VectorXd k1 = model.a * x, k2 = model.a * (x + 0.5 * h * k1),
+                          k3 = model.a * (x + 0.5 * h * k2), k4 = model.a * (x + h * k3);
+    x += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+  }
+  EXPECT_NEAR(response->front(), (model.c * x)(1), 1e-9);
+}
+
 }  // namespace
 }  // namespace fatmc
