@@ -24,9 +24,9 @@ TICK, STEP = 0.02, 0.02
 AXIS = {"roll": 0, "pitch": 1, "yaw": 2}
 EXPERIMENT = """kind = "experiment"
 [excitation]
-period_s = 4.0
+period_s = 2.0
 periods = 2
-ranges_hz = [[0.25, 2.75, 0.25]]
+ranges_hz = [[0.5, 3.0, 0.5]]
 amplitude_rad_s = [0.12, 0.08, 0.12]
 [controller]
 gain = [0.1, 0.1, 0.1]
@@ -359,7 +359,7 @@ def main():
             ours = aircraft.fly(reference)
             size = np.max(np.abs(theirs - plain) / scale)
             error = np.max(np.abs((ours - theirs) / scale))
-            good = error < 1e-3 * size and size > 1e-3
+            good = error < 1e-5 * size and size > 1e-3
             failed += not good
             print(f"{'ok  ' if good else 'FAIL'} {text}: changes the signals by {size:.3f}, agrees to {error / size:.1e} of that")
         assert failed == 0, f"{failed} effects differ"
