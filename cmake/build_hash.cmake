@@ -1,4 +1,4 @@
-# Writes OUTPUT (a C++ file) with the hash of this build. Run by proto/CMakeLists.txt at build time:
+# Writes OUTPUT (a C++ file) with the hash of this build. Run by core/base/CMakeLists.txt at build time:
 #   cmake -D SOURCE_DIR=... -D OUTPUT=... -D BUILD=<compiler, version, flags> -P build_hash.cmake
 # Covers C++ sources alone: specs, models and published figures are data, and a campaign carries its own.
 file(GLOB_RECURSE files RELATIVE ${SOURCE_DIR}
@@ -11,7 +11,7 @@ foreach(file IN LISTS files)
 endforeach()
 string(SHA256 hash "${text}")
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT [[
-#include "proto/build_hash.h"
+#include "core/base/build_hash.h"
 
 namespace fatmc {
 

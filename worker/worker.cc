@@ -13,7 +13,7 @@
 #include <random>
 #include <zmq.hpp>
 
-#include "proto/build_hash.h"
+#include "core/base/build_hash.h"
 #include "proto/host_name.h"
 #include "proto/wire.h"
 #include "worker/connection.h"

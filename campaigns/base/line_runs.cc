@@ -1,12 +1,21 @@
 #include "campaigns/base/line_runs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/base/check.h"
 #include "core/stats/empirical.h"
 
 namespace fatmc {
+
+std::size_t nearest_line(std::span<const double> frequency_hz, double hz) {
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < frequency_hz.size(); ++k) {
+    if (std::abs(frequency_hz[k] - hz) < std::abs(frequency_hz[best] - hz)) best = k;
+  }
+  return best;
+}
 
 void LineRuns::add(std::span<const double> run) {
   if (values_.empty()) values_.resize(run.size());

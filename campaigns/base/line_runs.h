@@ -53,6 +53,9 @@ class SortedRuns {
   std::vector<std::vector<Entry>> lines_;
 };
 
+/// Index of the line nearest to a frequency; of two equally near the lower.
+std::size_t nearest_line(std::span<const double> frequency_hz, double hz);
+
 /// A box a line at x[k].
 plot::Boxes boxes_of(const LineRuns& values, std::vector<double> x);
 /// Median over the runs of every line.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "core/stats/intervals.h"
@@ -86,6 +87,29 @@ void fill_statistic(TableRow& row, std::size_t runs, std::size_t published_runs,
   }
   row.low = scale == StatisticScale::ratio ? whole * std::exp(low) : whole + low;
   row.high = scale == StatisticScale::ratio ? whole * std::exp(high) : whole + high;
+}
+
+void fill_extreme(TableRow& row, std::size_t runs, std::size_t published_runs, const RunStatistic& statistic,
+                  std::string_view held, StatisticScale scale) {
+  fill_statistic(row, runs, published_runs, statistic, scale);
+  if (runs >= 2 * published_runs) {
+    std::vector<double> blocks;
+    std::vector<std::size_t> picks(published_runs);
+    for (std::size_t first = 0; first + published_runs <= runs; first += published_runs) {
+      std::iota(picks.begin(), picks.end(), first);
+      if (const double value = statistic(picks); std::isfinite(value)) blocks.push_back(value);
+    }
+    row.value = blocks.empty() ? kNone : mean_over_runs(blocks).mean;
+  }
+  if (std::isnan(row.published)) return;
+  const std::string published = std::to_string(published_runs) + " runs";
+  if (runs < published_runs) {
+    add_reason(row, "an extreme of " + std::to_string(runs) + " runs lies further out than one of " +
+                        published + "; the interval is one of " + published);
+  } else if (runs < 10 * published_runs && std::isfinite(row.low)) {
+    add_reason(row,
+               "an extreme: intervals from " + published + " hold " + std::string(held) + " % instead of 95");
+  }
 }
 
 void fill_share(TableRow& row, std::uint64_t hits, std::uint64_t runs, std::uint64_t published_runs) {

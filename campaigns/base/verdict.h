@@ -37,6 +37,13 @@ inline constexpr std::size_t kFewestRuns = 8;
 void fill_statistic(TableRow& row, std::size_t runs, std::size_t published_runs,
                     const RunStatistic& statistic, StatisticScale scale = StatisticScale::additive);
 
+/// The same for a smallest or largest value, over the lines for instance, of a statistic of runs: it lies further out the fewer
+/// runs there are. Of twice as many runs as published and more `value` is the mean over blocks of the published size. Beside
+/// print, why says what such intervals were found to hold (`held`: tests/validation/prediction_intervals.py) unless ours stands
+/// on ten times the published runs, and where there are fewer runs than published.
+void fill_extreme(TableRow& row, std::size_t runs, std::size_t published_runs, const RunStatistic& statistic,
+                  std::string_view held, StatisticScale scale = StatisticScale::additive);
+
 /// Share of runs with a property, in %, and the 95 % prediction interval of that share among `published_runs` further ones:
 /// quantiles of the beta-binomial law with Jeffreys' prior, Beta(hits + 1/2, runs - hits + 1/2).
 void fill_share(TableRow& row, std::uint64_t hits, std::uint64_t runs, std::uint64_t published_runs);

@@ -5,14 +5,6 @@
 
 namespace fatmc::bias {
 
-std::size_t ErrorRuns::nearest_line(double hz) const {
-  std::size_t best = 0;
-  for (std::size_t k = 1; k < frequency_hz.size(); ++k) {
-    if (std::abs(frequency_hz[k] - hz) < std::abs(frequency_hz[best] - hz)) best = k;
-  }
-  return best;
-}
-
 ErrorRuns error_runs(std::uint32_t cell, const RowSource& rows) {
   ErrorRuns out;
   rows(cell, [&](const TrialRow& row) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "campaigns/base/line_runs.h"
 #include "campaigns/base/study.h"
 #include "campaigns/bias/row_arrays.h"
 
@@ -21,7 +22,7 @@ struct ErrorRuns {
 
   [[nodiscard]] std::size_t runs() const { return trials - failed; }
   /// Index of the line nearest to a frequency.
-  [[nodiscard]] std::size_t nearest_line(double hz) const;
+  [[nodiscard]] std::size_t nearest_line(double hz) const { return fatmc::nearest_line(frequency_hz, hz); }
 };
 
 ErrorRuns error_runs(std::uint32_t cell, const RowSource& rows);

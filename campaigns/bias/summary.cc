@@ -21,16 +21,41 @@ struct Place {
   const char* why;
 };
 constexpr std::array kPlaces = {
-    Place{"phugoid", 0, 0.082, "zeros beside the phugoid shape the peak, and are not printed"},
+    Place{"phugoid", 0, 0.082,
+          "-11.1 dB with the pitch zero T_theta1 at 0.13 instead of our 0.27 rad/s, -11.2 with a phugoid "
+          "damped by 0.055 "
+          "instead of the printed 0.077"},
     Place{"short period", 0, 0.48,
           "nil for a linear plant: what is left is the servos' rate limit, which hangs on the amplitude"},
     Place{"zero of r/zeta", 1, 0.050,
-          "the zero stands at the border line: runs scatter by more than the printed error, and the mean by "
-          "a lot"},
+          "the zero stands at the border line, where the mean of 50 runs scatters as the interval says; "
+          "damped by 0.05 "
+          "instead of the printed 0.199 it gives -2.9 dB and -8.7 deg at most"},
     Place{"Dutch roll", 1, 0.33,
-          "no variation tried reaches it: a narrower peak or nearer zeros than Tables A-1, A-2, A-5 would"}};
+          "no variation reaches it: damped by 0.12 instead of the printed 0.184 the Dutch roll gives -0.46 "
+          "dB and 1.2 deg, "
+          "with a closer zero nothing changes"}};
 
-constexpr const char* kRangeWhy = "ruled by phugoid and zero, as Table 4-2";
+// Of Table 4-4, by response: where the extremes stand, and what moves them (chapter4_reference.py --unknowns).
+constexpr std::array kRangeWhy = {
+    "at the phugoid, as in Table 4-2: T_theta1 at 0.13 instead of our 0.27 rad/s gives -11.1 to 4.7 dB",
+    "at 0.05 Hz, the border and the zero: means of 50 runs scatter as the interval says; no damping of zero "
+    "or Dutch roll "
+    "gives more than 1.1 dB, a band from 0.03 Hz 3.2 dB and 20 deg"};
+
+// 13.8 and 5.4 dB by place and reading (chapter4_reference.py --unknowns).
+const char* estimate_why(std::size_t response, std::string_view reading) {
+  if (response == 0) {
+    if (reading == "limit")
+      return "12.1 dB with T_theta1 at 0.078 rad/s (ours: 0.27), 14.1 with a band from 0.04 Hz besides";
+    if (reading == "offsets")
+      return "14.0 to 22.5 dB with other zeros, dampings, gains and bands: always above print";
+    return "0.1 to 7.6 dB with other zeros, dampings, gains and bands: never near print";
+  }
+  if (reading == "magnitude")
+    return "1.9 to 2.4 dB with other zeros, gains and bands, 3.8 with the Dutch roll damped by 0.12";
+  return "0.1 dB from print: 21 lines instead of the limit of many; n_E 9 gives 4.7";
+}
 
 double mean_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -66,12 +91,18 @@ class CellTables {
     for (std::size_t r = 0; r < kResponses.size(); ++r) {
       const auto extreme = [&](const char* quantity, const char* unit, std::vector<double> MeanError::*member,
                                bool upper) {
-        statistic("4-4", row_of(r), quantity, unit, kRangeWhy, [&, r, member, upper](Picks picks) {
-          const MeanError errors = mean_error(runs_, r, picks);
-          const auto& values = errors.*member;
-          return upper ? *std::max_element(values.begin(), values.end())
-                       : *std::min_element(values.begin(), values.end());
-        });
+        TableRow row = begin("4-4", row_of(r), quantity, quantity, unit);
+        fill_extreme(
+            row, runs_.runs(), kPublishedRepetitions,
+            [&, r, member, upper](Picks picks) {
+              const MeanError errors = mean_error(runs_, r, picks);
+              const auto& values = errors.*member;
+              return upper ? *std::max_element(values.begin(), values.end())
+                           : *std::min_element(values.begin(), values.end());
+            },
+            "88 to 96", scale_of(unit));
+        judge_by_order(row, kRangeWhy[r]);
+        out_.push_back(std::move(row));
       };
       extreme("upper magnitude error", "dB", &MeanError::magnitude_db, true);
       extreme("lower magnitude error", "dB", &MeanError::magnitude_db, false);
@@ -121,7 +152,7 @@ class CellTables {
         TableRow row = begin("Section 4.2.3", std::string(kResponses[r].bias_place),
                              "bias estimate, " + std::string(kReadings[i].name), "bias estimate", "dB");
         fill_mean(row, decibel, kPublishedRepetitions);
-        judge_by_order(row, "one reading of several; at 0.08 Hz the window is one-sided");
+        judge_by_order(row, estimate_why(r, kReadings[i].key));
         out_.push_back(std::move(row));
       }
     }
@@ -130,6 +161,10 @@ class CellTables {
  private:
   static std::string row_of(std::size_t response) {
     return std::string(kResponses[response].key) + " response";
+  }
+
+  static StatisticScale scale_of(std::string_view unit) {
+    return unit == "deg" ? StatisticScale::angle_deg : StatisticScale::additive;
   }
 
   TableRow begin(const std::string& table, const std::string& row, const std::string& quantity,
@@ -145,8 +180,7 @@ class CellTables {
   void statistic(const std::string& table, const std::string& row, const std::string& quantity,
                  const std::string& unit, std::string_view why, const RunStatistic& of) {
     TableRow out = begin(table, row, quantity, quantity, unit);
-    fill_statistic(out, runs_.runs(), kPublishedRepetitions, of,
-                   unit == "deg" ? StatisticScale::angle_deg : StatisticScale::additive);
+    fill_statistic(out, runs_.runs(), kPublishedRepetitions, of, scale_of(unit));
     judge_by_order(out, why);
     out_.push_back(std::move(out));
   }

@@ -3,40 +3,26 @@
 #include <cmath>
 #include <utility>
 
+#include "campaigns/base/line_runs.h"
 #include "campaigns/bias/row_arrays.h"
-#include "campaigns/flown/flown_flights.h"
+#include "campaigns/flown/flown_trials.h"
 
 namespace fatmc::bias {
 namespace {
 
-class BiasTrials final : public PreparedCell {
+class BiasTrials final : public FlownTrials {
  public:
-  explicit BiasTrials(std::unique_ptr<const FlownFlights> flights) : flights_(std::move(flights)) {}
-
-  TrialRow run(std::uint64_t repetition) const override {
-    TrialRow row;
-    row.key = flights_->key(repetition);
-    const FlownFlights::Lease workspace = flights_->borrow();
-    if (flights_->fly(repetition, *workspace, row)) {
-      if (const FrmEstimate* frm = flights_->estimate(*workspace, row)) compare(*frm, row);
-    }
-    FlownFlights::describe(workspace->record, row);
-    return row;
-  }
-
-  std::optional<TrialRecord> record(std::uint64_t repetition) const override {
-    return flights_->record(repetition);
-  }
+  explicit BiasTrials(std::unique_ptr<const FlownFlights> flown) : FlownTrials(std::move(flown)) {}
 
  private:
-  void compare(const FrmEstimate& frm, TrialRow& row) const {
+  void keep(const FrmEstimate& frm, const FlightRecord&, TrialRow& row) const override {
     row.arrays.emplace_back(kFrequency, frm.frequency_hz);
     for (const Response& response : kResponses) {
       std::vector<double> re, im;
       for (int k = 0; k < frm.line_count(); ++k) {
         const std::complex<double> ratio =
             frm.G[k](response.output, response.input) /
-            flights_->truth()[static_cast<std::size_t>(k)](response.output, response.input);
+            flights().truth()[static_cast<std::size_t>(k)](response.output, response.input);
         re.push_back(ratio.real());
         im.push_back(ratio.imag());
       }
@@ -44,9 +30,9 @@ class BiasTrials final : public PreparedCell {
       row.arrays.emplace_back(ratio_im(response), std::move(im));
     }
     for (const Reading& reading : kReadings) {
-      const MatrixStack<double> b = interpolation_bias(flights_->grid(), frm, reading.reading);
+      const MatrixStack<double> b = interpolation_bias(flights().grid(), frm, reading.reading);
       for (const Response& response : kResponses) {
-        const int k = nearest_line(frm, response.bias_hz);
+        const int k = static_cast<int>(nearest_line(frm.frequency_hz, response.bias_hz));
         row.metrics.emplace_back(
             relative_bias(response, reading),
             b[k](response.output, response.input) / std::abs(frm.G[k](response.output, response.input)));
@@ -54,31 +40,10 @@ class BiasTrials final : public PreparedCell {
     }
     row.metrics.emplace_back("degrees_of_freedom", frm.q);
   }
-
-  static int nearest_line(const FrmEstimate& frm, double frequency_hz) {
-    int best = 0;
-    for (int k = 1; k < frm.line_count(); ++k) {
-      const auto distance = [&](int at) {
-        return std::abs(frm.frequency_hz[static_cast<std::size_t>(at)] - frequency_hz);
-      };
-      if (distance(k) < distance(best)) best = k;
-    }
-    return best;
-  }
-
-  std::unique_ptr<const FlownFlights> flights_;
 };
-
-Result<std::unique_ptr<PreparedCell>> prepare(const CampaignSpec& spec, std::uint32_t index) {
-  auto cell = decode_flown_cell(spec, index);
-  if (!cell) return fail(cell.error());
-  auto flights = FlownFlights::prepare(spec, index, std::move(*cell));
-  if (!flights) return fail(flights.error());
-  return std::make_unique<BiasTrials>(std::move(*flights));
-}
 
 }  // namespace
 
-const TrialStudy kTrialStudy{"bias", &prepare};
+const TrialStudy kTrialStudy{"bias", &prepare_flown<BiasTrials>};
 
 }  // namespace fatmc::bias

@@ -122,11 +122,14 @@ Maneuver fly(const Truth& truth, const FlightTest& test, int control, const std:
   const Eigen::MatrixXd from_gust = -(a - Eigen::MatrixXd::Identity(n, n)).leftCols(3);
   const Eigen::MatrixXd gain = test.scas * act_fhs_gain();
   Maneuver out{Eigen::MatrixXd(samples, kInputs), Eigen::MatrixXd(samples, kOutputs)};
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(n), measured = Eigen::VectorXd::Zero(kOutputs);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n), y = Eigen::VectorXd::Zero(kOutputs), measured = y;
   for (Eigen::Index t = 0; t < samples; ++t) {
-    const Eigen::VectorXd y = truth.model.c * x;
-    Eigen::VectorXd u = -gain * measured;  // of the sample before
-    const std::array<double, kInputs> holding = holding_command(y);
+    Eigen::Vector3d gust;
+    for (std::size_t i = 0; i < 3; ++i) gust(static_cast<Eigen::Index>(i)) = test.gust_m_s * gusts[i].next();
+    Eigen::VectorXd u = -gain * measured;                            // of the sample before,
+    const std::array<double, kInputs> holding = holding_command(y);  // as is what the pilot acts on
+    y = truth.model.c * x;
+    y.head<3>() -= gust;  // H (2b): airspeed components, the states are speeds over ground
     for (Eigen::Index i = 0; i < kInputs; ++i) {
       const auto at = static_cast<std::size_t>(i);
       if (hold_by_pulses) u(i) += pilots[at].command(static_cast<double>(t) * step_s, holding[at]);
@@ -136,8 +139,6 @@ Maneuver fly(const Truth& truth, const FlightTest& test, int control, const std:
       measured(i) = y(i) + test.noise[static_cast<std::size_t>(i)] * noise.normal();
     out.inputs.row(t) = u.transpose();
     out.outputs.row(t) = measured.transpose();
-    Eigen::Vector3d gust;
-    for (std::size_t i = 0; i < 3; ++i) gust(static_cast<Eigen::Index>(i)) = test.gust_m_s * gusts[i].next();
     x = (a * x + truth.model.b * u + from_gust * gust).eval();
   }
   return out;
@@ -159,6 +160,13 @@ FlownTest fly_test(const Truth& truth, const FlightTest& test, const TrialSeed& 
                                    seed, multistep));
     }
   }
+  return out;
+}
+
+FlownTest recorded_test(const Truth& truth, const FlightTest& test, const TrialSeed& seed) {
+  FlownTest out = fly_test(truth, test, seed);
+  remove_offsets(out.sweeps, OffsetRemoval::mean);
+  remove_offsets(out.multisteps, OffsetRemoval::first);
   return out;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "campaigns/conditions/row_arrays.h"
-#include "campaigns/flown/flown_flights.h"
+#include "campaigns/flown/flown_trials.h"
 #include "core/stats/confidence.h"
 #include "core/stats/empirical.h"
 
@@ -13,34 +13,19 @@ namespace {
 
 constexpr int kAxes = 3;
 
-class ConditionTrials final : public PreparedCell {
+class ConditionTrials final : public FlownTrials {
  public:
-  explicit ConditionTrials(std::unique_ptr<const FlownFlights> flights) : flights_(std::move(flights)) {
-    for (int k = 0; k < flights_->grid().line_count(); ++k)
-      frequency_hz_.push_back(flights_->grid().frequency_hz(k));
-  }
-
-  TrialRow run(std::uint64_t repetition) const override {
-    TrialRow row;
-    row.key = flights_->key(repetition);
-    const FlownFlights::Lease workspace = flights_->borrow();
-    if (flights_->fly(repetition, *workspace, row)) {
-      if (const FrmEstimate* frm = flights_->estimate(*workspace, row); frm != nullptr) store(*frm, row);
-    }
-    FlownFlights::describe(workspace->record, row);
-    return row;
-  }
-
-  std::optional<TrialRecord> record(std::uint64_t repetition) const override {
-    return flights_->record(repetition);
+  explicit ConditionTrials(std::unique_ptr<const FlownFlights> flown) : FlownTrials(std::move(flown)) {
+    for (int k = 0; k < flights().grid().line_count(); ++k)
+      frequency_hz_.push_back(flights().grid().frequency_hz(k));
   }
 
  private:
   [[nodiscard]] std::complex<double> truth(int k, int i, int j) const {
-    return flights_->truth()[static_cast<std::size_t>(k)](i, j);
+    return flights().truth()[static_cast<std::size_t>(k)](i, j);
   }
 
-  void store(const FrmEstimate& frm, TrialRow& row) const {
+  void keep(const FrmEstimate& frm, const FlightRecord&, TrialRow& row) const override {
     row.arrays.emplace_back(kFrequency, frequency_hz_);
     for (const Element& element : kElements) store_element(element, frm, row);
     const double quantile = f_quantile_2_2q(0.95, frm.q);
@@ -81,20 +66,11 @@ class ConditionTrials final : public PreparedCell {
     row.arrays.emplace_back(name_of(element, kVariance), std::move(variance));
   }
 
-  std::unique_ptr<const FlownFlights> flights_;
   std::vector<double> frequency_hz_;
 };
 
-Result<std::unique_ptr<PreparedCell>> prepare(const CampaignSpec& spec, std::uint32_t index) {
-  auto cell = decode_flown_cell(spec, index);
-  if (!cell) return fail(cell.error());
-  auto flights = FlownFlights::prepare(spec, index, std::move(*cell));
-  if (!flights) return fail(flights.error());
-  return std::make_unique<ConditionTrials>(std::move(*flights));
-}
-
 }  // namespace
 
-const TrialStudy kTrialStudy{"conditions", &prepare};
+const TrialStudy kTrialStudy{"conditions", &prepare_flown<ConditionTrials>};
 
 }  // namespace fatmc::conditions

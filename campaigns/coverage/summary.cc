@@ -100,7 +100,7 @@ Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& 
         compared_with_print(spec, index) ? *published : std::vector<PublishedFigure>{};
     add_table_5_5(cell, suffix, figures, table_5_5);
     add_figure_5_4(cell, suffix, figure_5_4);
-    cell.snr.add_rows(cell.trials - cell.failed, suffix, figures, snr);
+    cell.snr.add_rows(cell.trials, suffix, figures, snr);
     if (index == 0) {
       if (Status status = add_insensitivity_rows(spec, figures, figure_5_2); !status)
         return fail(status.error());

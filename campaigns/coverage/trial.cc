@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "campaigns/coverage/row_arrays.h"
-#include "campaigns/flown/flown_flights.h"
+#include "campaigns/flown/flown_trials.h"
 #include "core/ident/interpolation_bias.h"
 #include "core/stats/confidence.h"
 
@@ -16,34 +16,19 @@ namespace {
 constexpr int kAxes = 3;
 constexpr const char* kInputSuffix[] = {"xi_c", "eta_c", "zeta_c"};
 
-class CoverageTrials final : public PreparedCell {
+class CoverageTrials final : public FlownTrials {
  public:
-  explicit CoverageTrials(std::unique_ptr<const FlownFlights> flights) : flights_(std::move(flights)) {}
-
-  TrialRow run(std::uint64_t repetition) const override {
-    TrialRow row;
-    row.key = flights_->key(repetition);
-    const FlownFlights::Lease workspace = flights_->borrow();
-    if (flights_->fly(repetition, *workspace, row)) estimate(*workspace, row);
-    FlownFlights::describe(workspace->record, row);
-    return row;
-  }
-
-  std::optional<TrialRecord> record(std::uint64_t repetition) const override {
-    return flights_->record(repetition);
-  }
+  explicit CoverageTrials(std::unique_ptr<const FlownFlights> flown) : FlownTrials(std::move(flown)) {}
 
  private:
-  void estimate(FlownFlights::Workspace& workspace, TrialRow& row) const {
-    const FrmEstimate* frm = flights_->estimate(workspace, row);
-    if (frm == nullptr) return;
-    const MatrixStack<double> bias = interpolation_bias(flights_->grid(), *frm, BiasConstant::exact_offsets);
+  void keep(const FrmEstimate& frm, const FlightRecord& record, TrialRow& row) const override {
+    const MatrixStack<double> bias = interpolation_bias(flights().grid(), frm, BiasConstant::exact_offsets);
     std::optional<MatrixStack<double>> printed;  // print has constants for the orders 2, 4 and 6
-    if (printed_bias_constant(flights_->cell().estimator.order)) {
-      printed = interpolation_bias(flights_->grid(), *frm, BiasConstant::printed);
+    if (printed_bias_constant(flights().cell().estimator.order)) {
+      printed = interpolation_bias(flights().grid(), frm, BiasConstant::printed);
     }
-    store(*frm, bias, printed, row);
-    row.metrics.emplace_back("mean_speed_m_s", workspace.record.auxiliary.col(2).mean());
+    store(frm, bias, printed, row);
+    row.metrics.emplace_back("mean_speed_m_s", record.auxiliary.col(2).mean());
   }
 
   void store(const FrmEstimate& frm, const MatrixStack<double>& bias,
@@ -55,7 +40,7 @@ class CoverageTrials final : public PreparedCell {
       for (int i = 0; i < kAxes; ++i) {
         for (int j = 0; j < kAxes; ++j) {
           const std::complex<double> error =
-              frm.G[k](i, j) - flights_->truth()[static_cast<std::size_t>(k)](i, j);
+              frm.G[k](i, j) - flights().truth()[static_cast<std::size_t>(k)](i, j);
           re.push_back(error.real());
           im.push_back(error.imag());
           variance.push_back(frm.variance(k, i, j));
@@ -89,20 +74,10 @@ class CoverageTrials final : public PreparedCell {
     if (printed) row.arrays.emplace_back(kBiasPrinted, std::move(b_printed));
     row.arrays.emplace_back(kInputSnr, std::move(snr));
   }
-
-  std::unique_ptr<const FlownFlights> flights_;
 };
-
-Result<std::unique_ptr<PreparedCell>> prepare(const CampaignSpec& spec, std::uint32_t index) {
-  auto cell = decode_flown_cell(spec, index);
-  if (!cell) return fail(cell.error());
-  auto flights = FlownFlights::prepare(spec, index, std::move(*cell));
-  if (!flights) return fail(flights.error());
-  return std::make_unique<CoverageTrials>(std::move(*flights));
-}
 
 }  // namespace
 
-const TrialStudy kTrialStudy{"coverage", &prepare};
+const TrialStudy kTrialStudy{"coverage", &prepare_flown<CoverageTrials>};
 
 }  // namespace fatmc::coverage

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/flight/effects/effect_limit.h"
+
 namespace fatmc::hidden_effect {
 namespace {
 
@@ -15,9 +17,7 @@ double value(const EffectParameter& parameter, double share, RandomStream& rando
   const double place = random.uniform();
   const bool mirrored = random.uniform() < 0.5;
   const double moderate = parameter.moderate(place, mirrored && parameter.strength);
-  // A limit has no nominal size to be a share of: a small effect is one that is met half as deep, at 3/2 of the limit.
-  const bool limit = parameter.strength && parameter.logarithmic && parameter.nominal == parameter.high;
-  if (limit) return share < 1.0 ? 1.5 * moderate : moderate;
+  if (is_limit(parameter)) return moderate;
   return std::clamp(parameter.toward(moderate, share), parameter.low, parameter.high);
 }
 
@@ -45,8 +45,10 @@ Drawn draw(const Tier& tier, RandomStream& random) {
   }
   for (Effect effect : variants_named(tier.uncertain)) {
     const EffectParameter& factor = effect.kind().parameters.front();
+    const auto [least, most] = tier.nominal_error;
+    const double error = least + (most - least) * random.uniform();
     effect.values.front() =
-        std::clamp(std::exp(tier.nominal_error * random.normal()), factor.low, factor.high);
+        std::clamp(1.0 + (random.uniform() < 0.5 ? -error : error), factor.low, factor.high);
     out.errors.push_back(std::move(effect));
   }
   if (tier.turbulence_error > 0.0) {

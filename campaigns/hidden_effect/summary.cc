@@ -1,158 +1,151 @@
 #include "campaigns/hidden_effect/summary.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <map>
 #include <optional>
 
-#include "campaigns/hidden_effect/row_metrics.h"
-#include "core/flight/effects/effect.h"
+#include "campaigns/base/verdict.h"
+#include "campaigns/hidden_effect/bars.h"
+#include "campaigns/hidden_effect/hidden_results.h"
 #include "core/stats/empirical.h"
 #include "core/stats/intervals.h"
+#include "core/stats/quantile_interval.h"
 
 namespace fatmc::hidden_effect {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kTable = "Hidden effects";
+constexpr const char* kEffectTable = "Hidden effects, one by one";
 
-std::optional<double> metric(const TrialRow& row, std::string_view name) {
-  for (const auto& [key, value] : row.metrics) {
-    if (key == name) return value;
-  }
-  return std::nullopt;
-}
-
-struct Count {
-  std::uint64_t hits = 0, n = 0;
-  void add(bool hit) {
-    ++n;
-    hits += hit ? 1 : 0;
-  }
-};
-
-/// What a pass over a cell's rows collects. A trial that diverged is in `diverged` alone: nothing was flown to diagnose.
-struct CellResults {
-  Count detected, named, right, both, any, holds, spurious, unknown, wrong, covered, diverged,
-      right_of_detected;
-  std::vector<double> class_size, error, gap;
-  std::map<int, Count> right_by_effect;
-  std::map<std::pair<int, int>, std::uint64_t> confusion;  ///< hidden, named (-1: none, -2: class or unknown)
-  int hidden = 0;
-};
-
-void read_row(const TrialRow& row, CellResults& out) {
-  out.diverged.add(row.outcome != "ok");
-  if (row.outcome != "ok") return;
-  const int first = static_cast<int>(metric(row, kHidden[0]).value_or(-1.0));
-  const int second = static_cast<int>(metric(row, kHidden[1]).value_or(-1.0));
-  const int verdict = static_cast<int>(metric(row, kVerdict).value_or(0.0));
-  const double right = metric(row, kRightCount).value_or(0.0), count = metric(row, kNamedCount).value_or(0.0);
-  out.hidden = (first >= 0 ? 1 : 0) + (second >= 0 ? 1 : 0);
-  const bool detected = verdict != 0;
-  out.detected.add(detected);
-  out.unknown.add(verdict == 3);
-  out.named.add(count > 0.0);
-  out.spurious.add(metric(row, kSpurious).value_or(0.0) > 0.0 && right > 0.0);
-  if (out.hidden == 0) return;
-  out.right.add(right >= 1.0);
-  if (detected) out.right_of_detected.add(right >= 1.0);
-  out.any.add(right >= 1.0);
-  out.both.add(right >= 2.0);
-  out.wrong.add(verdict == 1 && right == 0.0);
-  out.holds.add(metric(row, kClassHolds).value_or(0.0) > 0.5);
-  if (count > 0.0) out.class_size.push_back(metric(row, kClassSize).value_or(1.0));
-  if (const auto e = metric(row, kParameterError)) out.error.push_back(*e);
-  if (const auto c = metric(row, kCovered)) out.covered.add(*c > 0.5);
-  if (const auto g = metric(row, kGapLeft)) out.gap.push_back(*g);
-  if (out.hidden == 1) {
-    out.right_by_effect[first].add(right >= 1.0);
-    const int named = verdict == 1   ? static_cast<int>(metric(row, kNamed[0]).value_or(-1.0))
-                      : verdict == 0 ? -1
-                                     : -2;
-    ++out.confusion[{first, named}];
-  }
-}
-
-class Rows {
+/// Rows of one cell; intervals are those of the quantity itself (95 %), not of a repetition.
+class CellTable {
  public:
-  Rows(std::string cell, std::vector<TableRow>& out) : cell_(std::move(cell)), out_(out) {}
-  void share(const std::string& quantity, const Count& count, const std::string& bar = "") {
+  CellTable(const CellResults& cell, std::vector<TableRow>& out) : cell_(cell), out_(out) {}
+
+  void share(const std::string& quantity, const Count& count, std::optional<Quantity> judged = {},
+             const char* table = kTable) {
     if (count.n == 0) return;
+    TableRow row = table_row(table, cell_.name, quantity, "%");
     const Interval interval = proportion_interval(count.hits, count.n);
-    const double value = 100.0 * static_cast<double>(count.hits) / static_cast<double>(count.n);
-    out_.push_back({kTable, cell_, quantity, "%", kNone, value, 100.0 * interval.low, 100.0 * interval.high,
-                    count.n, "", bar});
+    row.value = 100.0 * static_cast<double>(count.hits) / static_cast<double>(count.n);
+    row.low = 100.0 * interval.low;
+    row.high = 100.0 * interval.high;
+    row.n = count.n;
+    finish(std::move(row), judged);
   }
+  /// In %.
   void quantile(const std::string& quantity, const std::vector<double>& values, double p,
-                const std::string& bar) {
+                std::optional<Quantity> judged, const char* table = kTable) {
     if (values.empty()) return;
-    const double value = EmpiricalCdf(values).quantile(p);
-    out_.push_back(
-        {kTable, cell_, quantity, "%", kNone, 100.0 * value, kNone, kNone, values.size(), "", bar});
+    TableRow row = table_row(table, cell_.name, quantity, "%");
+    const EmpiricalCdf cdf(values);
+    const Interval interval = quantile_interval(cdf.sorted(), p);
+    row.value = 100.0 * cdf.quantile(p);
+    row.low = 100.0 * interval.low;
+    row.high = 100.0 * interval.high;
+    row.n = values.size();
+    finish(std::move(row), judged);
   }
-  void mean(const std::string& quantity, const std::vector<double>& values, const std::string& bar) {
-    if (values.empty()) return;
+  void mean(const std::string& quantity, const std::vector<double>& values, Quantity judged) {
+    if (values.size() < 2) return;
+    TableRow row = table_row(kTable, cell_.name, quantity, "");
     const RunMean runs = mean_over_runs(values);
     const Interval interval = mean_interval(runs);
-    out_.push_back(
-        {kTable, cell_, quantity, "", kNone, runs.mean, interval.low, interval.high, runs.n, "", bar});
+    row.value = runs.mean;
+    row.low = interval.low;
+    row.high = interval.high;
+    row.n = runs.n;
+    finish(std::move(row), judged);
+  }
+  /// The one-sided upper 95 % bound of a share, itself the value.
+  void bound(const std::string& quantity, const Count& count, Quantity judged) {
+    TableRow row = table_row(kTable, cell_.name, quantity, "%");
+    row.value = 100.0 * proportion_interval(count.hits, count.n, 0.90).high;
+    row.n = count.n;
+    finish(std::move(row), judged);
   }
 
  private:
-  std::string cell_;
+  void finish(TableRow row, std::optional<Quantity> judged) {
+    if (judged) judge_by_bar(row, bar_of(cell_.tier.role, *judged));
+    out_.push_back(std::move(row));
+  }
+  const CellResults& cell_;
   std::vector<TableRow>& out_;
 };
 
-std::string effect_name(int number) {
-  static const std::vector<Effect> all = effect_variants();
-  if (number == -1) return "nothing";
-  if (number < 0 || number >= static_cast<int>(all.size())) return "class or unknown";
-  return all[static_cast<std::size_t>(number)].name();
+void write_null(const CellResults& r, CellTable& table) {
+  table.share("false alarm", r.detected, Quantity::false_alarm);
+  table.bound("false alarm, one-sided upper 95 % bound", r.detected, Quantity::false_alarm_bound);
 }
 
-void write_cell(const std::string& name, const CellResults& r, std::vector<TableRow>& out) {
-  Rows rows(name, out);
-  rows.share("diverged", r.diverged);
-  if (r.hidden == 0) {
-    rows.share("false alarm", r.detected, "bar: at most 1 %, upper bound 1.5 %");
-    rows.share("false name", r.named);
-    return;
-  }
-  rows.share("detected", r.detected);
-  if (r.hidden == 2) {
-    rows.share("both named", r.both, "bar: at least 90 %");
-    rows.share("at least one named", r.any, "bar: at least 99 %");
+void write_names(const CellResults& r, CellTable& table) {
+  table.share("detected", r.detected, Quantity::detected);
+  if (r.tier.draw.effects == 2) {
+    table.share("both named", r.both, Quantity::both);
+    table.share("at least one named", r.any, Quantity::any);
   } else {
-    rows.share("right name", r.right, "bar: at least 97 % at moderate size");
-    rows.share("right name if detected", r.right_of_detected, "bar: at least 93 % at quarter size");
-    rows.share("class contains the truth", r.holds, "bar: at least 99 %");
+    table.share("right name", r.right, Quantity::right);
+    table.share("right name if detected", r.right_if_detected, Quantity::right_if_detected);
+    table.share("named or in the class, of answers with a name", r.class_holds, Quantity::class_holds);
+    table.mean("mean class size", r.class_size, Quantity::class_size);
   }
-  rows.mean("mean class size", r.class_size, "bar: at most 1.2");
-  rows.share("confident wrong name", r.wrong, "bar: at most 3 %");
-  rows.share("spurious further effect", r.spurious, "bar: at most 3 %");
-  rows.share("unknown", r.unknown, "bar: at most 3 %; at least 95 % out of library, 60 % if absorbable");
-  rows.quantile("parameter error, median", r.error, 0.5, "bar: at most 2 %");
-  rows.quantile("parameter error, 90 % quantile", r.error, 0.9, "bar: at most 5 %");
-  rows.share("95 % interval covers", r.covered, "bar: 92-98 %");
-  rows.quantile("gap left on an unseen record, median", r.gap, 0.5, "bar: at most 1 %");
-  rows.quantile("gap left on an unseen record, 90 % quantile", r.gap, 0.9, "bar: at most 5 %");
-  for (const auto& [number, count] : r.right_by_effect)
-    rows.share("right: " + effect_name(number), count, "bar: at least 90 %");
+  table.share("confident wrong name", r.wrong, Quantity::wrong);
+  table.share("spurious further effect", r.spurious, Quantity::spurious);
+}
+
+void write_sizes(const CellResults& r, CellTable& table) {
+  table.quantile("parameter error, median", r.parameter_error, 0.5, Quantity::error_median);
+  table.quantile("parameter error, 90 % quantile", r.parameter_error, 0.9, Quantity::error_high);
+  table.share("95 % interval covers", r.covered, Quantity::covered);
+  table.quantile("gap left on an unseen record, median", r.gap_left, 0.5, Quantity::gap_median);
+  table.quantile("gap left on an unseen record, 90 % quantile", r.gap_left, 0.9, Quantity::gap_high);
+}
+
+void write_effects(const CellResults& r, CellTable& table) {
+  const bool known = r.tier.role != Role::unknown;
+  for (const auto& [number, one] : r.by_effect) {
+    const std::string name = effect_name(number) + ": ";
+    if (!known) {
+      table.share(name + "unknown", one.unknown, std::nullopt, kEffectTable);
+      continue;
+    }
+    table.share(name + "right name", one.right, Quantity::right_one_effect, kEffectTable);
+    table.share(name + "detected", one.detected, std::nullopt, kEffectTable);
+    table.quantile(name + "parameter error, median", one.error, 0.5, std::nullopt, kEffectTable);
+    table.share(name + "95 % interval covers", one.covered, std::nullopt, kEffectTable);
+  }
   for (const auto& [pair, n] : r.confusion) {
     if (pair.first == pair.second) continue;
-    const Count count{n, r.right_by_effect.at(pair.first).n};
-    rows.share("confusion: " + effect_name(pair.first) + " named " + effect_name(pair.second), count);
+    table.share(effect_name(pair.first) + ": answered " + effect_name(pair.second),
+                {n, r.by_effect.at(pair.first).right.n}, std::nullopt, kEffectTable);
+  }
+}
+
+void write_cell(const CellResults& r, std::vector<TableRow>& out) {
+  CellTable table(r, out);
+  table.share("no answer", r.failed);
+  if (r.tier.draw.effects == 0) return write_null(r, table);
+  if (r.tier.role == Role::unknown) {
+    table.share("detected", r.detected);
+    table.share("unknown flagged", r.unknown, Quantity::unknown);
+    table.share("unknown flagged, absorbable ones", r.unknown_absorbable, Quantity::unknown_absorbable);
+    table.share("confident wrong name", r.wrong);
+  } else {
+    write_names(r, table);
+    table.share("known flagged as unknown", r.unknown, Quantity::unknown);
+    write_sizes(r, table);
   }
 }
 
 Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& rows) {
+  auto cells = read_results(spec, rows);
+  if (!cells) return fail(cells.error());
   std::vector<TableRow> out;
-  for (std::uint32_t c = 0; c < spec.cells.size(); ++c) {
-    CellResults results;
-    rows(c, [&](const TrialRow& row) { read_row(row, results); });
-    if (results.diverged.n > 0) write_cell(spec.cells[c].name, results, out);
+  for (const CellResults& cell : *cells) {
+    if (cell.trials() > 0) write_cell(cell, out);
+  }
+  for (const CellResults& cell : *cells) {
+    CellTable table(cell, out);
+    write_effects(cell, table);
   }
   return out;
 }

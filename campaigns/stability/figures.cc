@@ -11,8 +11,11 @@ namespace {
 using enum Criterion;
 
 std::string what_is_shown(const JudgedRuns& runs) {
-  return std::to_string(runs.runs()) +
-         " runs a box: quartiles and median, whiskers to 1.5 interquartile ranges, dots beyond.";
+  std::string out = std::to_string(runs.runs()) +
+                    " runs a box: quartiles and median, whiskers to 1.5 interquartile ranges, dots beyond.";
+  if (runs.failed > 0)
+    out += " " + std::to_string(runs.failed) + " of them gave no estimate: no value, and p = 0.";
+  return out;
 }
 
 LineRuns decibels(const LineRuns& ratios) {

@@ -1,5 +1,7 @@
 #include "campaigns/stability/judged_runs.h"
 
+#include <limits>
+
 namespace fatmc::stability {
 namespace {
 
@@ -9,6 +11,21 @@ std::vector<double> product_over_lines(const LineRuns& p) {
     for (std::size_t run = 0; run < out.size(); ++run) out[run] *= p.line(k)[run];
   }
   return out;
+}
+
+void add_failed_run(JudgedRuns& out) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const auto add = [&out](const std::string& name, double value) {
+    out.arrays[name].add(std::vector<double>(out.frequency_hz.size(), value));
+  };
+  for (const auto name : {kNominalHInfinity, kNominalSsv}) add(std::string(name), kInfinity);
+  add(std::string(kSmallestSnr), -kInfinity);
+  for (const Reading& reading : kReadings) {
+    for (const Criterion criterion : {Criterion::h_infinity, Criterion::ssv}) {
+      add(value_array(reading, criterion), kInfinity);
+      for (const Rule rule : kRules) add(confidence_array(reading, criterion, rule), 0.0);
+    }
+  }
 }
 
 }  // namespace
@@ -68,6 +85,8 @@ JudgedRuns judged_runs(std::uint32_t cell, const RowSource& rows) {
       }
     }
   });
+  if (out.frequency_hz.empty()) return out;
+  for (std::uint64_t run = 0; run < out.failed; ++run) add_failed_run(out);
   return out;
 }
 

@@ -12,12 +12,15 @@
 namespace fatmc::stability {
 
 struct JudgedRuns {
-  std::uint64_t trials = 0, failed = 0;  ///< failed: without an estimate, counted as p = 0 over the band
+  /// failed: without an estimate. Where any trial has one, the arrays hold them, too, behind the others, as what shows no
+  /// stability at all: values infinite, p zero, SNR minus infinity. So every share and quantile is one of all trials.
+  std::uint64_t trials = 0, failed = 0;
   std::vector<double> frequency_hz;
   double minimum_snr_db = 0.0;
   std::map<std::string, LineRuns, std::less<>> arrays;
 
-  [[nodiscard]] std::size_t runs() const { return trials - failed; }
+  /// All trials; none where no trial has an estimate, and with it no line is known.
+  [[nodiscard]] std::size_t runs() const { return frequency_hz.empty() ? 0 : trials; }
   [[nodiscard]] const LineRuns& array(const std::string& name) const { return arrays.at(name); }
   [[nodiscard]] const LineRuns& value(const Reading& reading, Criterion criterion) const {
     return arrays.at(value_array(reading, criterion));

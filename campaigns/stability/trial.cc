@@ -3,41 +3,26 @@
 #include <utility>
 
 #include "campaigns/base/decoder.h"
-#include "campaigns/flown/flown_flights.h"
+#include "campaigns/flown/flown_trials.h"
 #include "campaigns/stability/row_arrays.h"
 #include "core/stability/estimate_stability.h"
 
 namespace fatmc::stability {
 namespace {
 
-class StabilityTrials final : public PreparedCell {
+class StabilityTrials final : public FlownTrials {
  public:
-  StabilityTrials(std::unique_ptr<const FlownFlights> flights, NominalLoop nominal, StabilityOptions options)
-      : flights_(std::move(flights)), nominal_(std::move(nominal)), options_(options) {}
-
-  TrialRow run(std::uint64_t repetition) const override {
-    TrialRow row;
-    row.key = flights_->key(repetition);
-    const FlownFlights::Lease workspace = flights_->borrow();
-    if (flights_->fly(repetition, *workspace, row)) {
-      if (const FrmEstimate* frm = flights_->estimate(*workspace, row)) judge(*frm, row);
-    }
-    FlownFlights::describe(workspace->record, row);
-    return row;
-  }
-
-  std::optional<TrialRecord> record(std::uint64_t repetition) const override {
-    return flights_->record(repetition);
-  }
+  StabilityTrials(std::unique_ptr<const FlownFlights> flown, NominalLoop nominal, StabilityOptions options)
+      : FlownTrials(std::move(flown)), nominal_(std::move(nominal)), options_(options) {}
 
  private:
-  void judge(const FrmEstimate& frm, TrialRow& row) const {
+  void keep(const FrmEstimate& frm, const FlightRecord&, TrialRow& row) const override {
     row.arrays.emplace_back(kFrequency, frm.frequency_hz);
     for (const Reading& reading : kReadings) judge(frm, reading, row);
   }
 
   void judge(const FrmEstimate& frm, const Reading& reading, TrialRow& row) const {
-    const MatrixStack<double> bias = interpolation_bias(flights_->grid(), frm, reading.reading);
+    const MatrixStack<double> bias = interpolation_bias(flights().grid(), frm, reading.reading);
     StabilityOptions options = options_;
     options.bias = reading.bias;
     const EstimateStability judged = judge_estimate(frm, bias, nominal_, options);
@@ -78,7 +63,6 @@ class StabilityTrials final : public PreparedCell {
         [&](int k) { return bonferroni(k, line(k).kappa_ssv); });
   }
 
-  std::unique_ptr<const FlownFlights> flights_;
   NominalLoop nominal_;
   StabilityOptions options_;
 };

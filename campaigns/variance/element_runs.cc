@@ -17,14 +17,6 @@ double ElementRuns::between_runs(std::size_t line, std::size_t element,
   return sum / static_cast<double>(picks.size() - 1);
 }
 
-std::size_t ElementRuns::nearest_line(double hz) const {
-  std::size_t best = 0;
-  for (std::size_t k = 1; k < frequency_hz.size(); ++k) {
-    if (std::abs(frequency_hz[k] - hz) < std::abs(frequency_hz[best] - hz)) best = k;
-  }
-  return best;
-}
-
 ElementRuns element_runs(std::uint32_t cell, const RowSource& rows) {
   ElementRuns out;
   rows(cell, [&](const TrialRow& row) {

@@ -21,7 +21,7 @@ struct ElementRuns {
   [[nodiscard]] double between_runs(std::size_t line, std::size_t element,
                                     std::span<const std::size_t> picks) const;
   /// Index of the line nearest to a frequency.
-  [[nodiscard]] std::size_t nearest_line(double hz) const;
+  [[nodiscard]] std::size_t nearest_line(double hz) const { return fatmc::nearest_line(frequency_hz, hz); }
 };
 
 ElementRuns element_runs(std::uint32_t cell, const RowSource& rows);

@@ -20,7 +20,7 @@
 #include "coordinator/server/local_workers.h"
 #include "coordinator/state/campaign_state.h"
 #include "coordinator/store/campaign_store.h"
-#include "proto/build_hash.h"
+#include "core/base/build_hash.h"
 #include "proto/key_files.h"
 
 namespace fatmc::cli {

@@ -11,7 +11,7 @@
 #include "coordinator/cli/trial_name.h"
 #include "coordinator/store/campaign_control.h"
 #include "coordinator/store/campaign_store.h"
-#include "proto/build_hash.h"
+#include "core/base/build_hash.h"
 
 namespace fatmc::cli {
 namespace {

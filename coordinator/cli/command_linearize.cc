@@ -9,6 +9,7 @@
 #include "coordinator/input/aircraft_file.h"
 #include "core/base/text.h"
 #include "core/flight/linear_model.h"
+#include "core/flight/step_parts.h"
 
 namespace fatmc::cli {
 namespace {
@@ -27,8 +28,10 @@ struct Linearization {
 Result<Linearization> linearization(const std::string& path) {
   Result<TrimmedAircraft> read = read_trimmed_aircraft(path);
   if (!read) return fail(read.error());
-  return Linearization{read->aircraft, read->trim, linearize(read->aircraft, read->trim),
-                       sample(read->aircraft, read->trim, kTickSeconds, 1), read->not_linear};
+  const LinearModel continuous = linearize(read->aircraft, read->trim);
+  const int steps = parts_of_step(read->aircraft, continuous, kTickSeconds);
+  return Linearization{read->aircraft, read->trim, continuous,
+                       sample(read->aircraft, read->trim, kTickSeconds, steps), read->not_linear};
 }
 
 template <typename Matrix>
@@ -111,7 +114,8 @@ void print_beside_published(const Linearization& of) {
   row(published::kTableA1, 2, pole(4));
   row(published::kTableA1, 3, nearest(pitch_zeros, -2.0 * kPi * published::kTableA1[3].frequency_hz));
   std::printf(
-      "  T_theta1: no plausible set of derivatives found that meets it, campaigns/models/README.md says why\n");
+      "  T_theta1: no plausible set of derivatives found that meets it, campaigns/models/README.md says "
+      "why\n");
   std::printf(
       "\nTable A-2, lateral        published         ours  deviation (spiral: printed as a bound, \"<\")\n");
   row(published::kTableA2, 0, pole(0));

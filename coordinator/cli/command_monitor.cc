@@ -50,6 +50,8 @@ Result<StabilityMonitor> make_monitor(const MonitorArguments& arguments, const R
       arguments.nominal, {channel_names(record, record.input), channel_names(record, record.output),
                           record.rate_hz, record.hold, *controller, frequency_hz});
   if (!nominal) return fail(nominal.error());
+  const std::string missing = effects_not_shown(*nominal, arguments.nominal);
+  if (!missing.empty()) std::fprintf(stderr, "fatmc: %s\n", missing.c_str());  // standard output carries epochs
   return StabilityMonitor(*grid, static_cast<int>(record.output.size()), nominal->loop, arguments.options);
 }
 

@@ -12,7 +12,7 @@
 #include "coordinator/store/campaign_store.h"
 #include "core/base/text.h"
 #include "core/record/column_file.h"
-#include "proto/build_hash.h"
+#include "core/base/build_hash.h"
 
 namespace fatmc::cli {
 namespace {

@@ -14,7 +14,7 @@
 #include "coordinator/cli/study_results.h"
 #include "coordinator/plot/svg.h"
 #include "coordinator/report/campaign_page.h"
-#include "proto/build_hash.h"
+#include "core/base/build_hash.h"
 
 namespace fatmc::cli {
 namespace {

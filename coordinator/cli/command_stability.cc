@@ -110,6 +110,8 @@ std::string summary_json(const StabilityArguments& arguments, const JudgedRecord
                      {"moved_poles", judged.nominal.moved_poles},
                      {"largest_pole", optional(judged.nominal.largest_pole)},
                      {"largest_closed_loop_pole", optional(judged.nominal.largest_closed_loop_pole)}};
+  if (!judged.nominal.effects_not_shown.empty())
+    json["nominal"]["effects_not_shown"] = judged.nominal.effects_not_shown;
   return json.dump(2) + "\n";
 }
 
@@ -126,6 +128,8 @@ void print_nominal(const StabilityArguments& arguments, const NominalPlant& nomi
                 nominal.moved_poles == 1 ? "pole" : "poles");
   }
   std::printf("\n");
+  const std::string missing = effects_not_shown(nominal, arguments.nominal);
+  if (!missing.empty()) std::printf("%s\n", missing.c_str());
 }
 
 /// "0.523 at 0.325 Hz" of the line where `value` is largest.

@@ -12,7 +12,7 @@
 #include "coordinator/input/record_file.h"
 #include "coordinator/input/toml_file.h"
 #include "core/base/text.h"
-#include "proto/build_hash.h"
+#include "core/base/build_hash.h"
 
 namespace fatmc::cli {
 namespace {

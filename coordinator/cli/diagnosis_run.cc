@@ -5,21 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <system_error>
 #include <thread>
 
 #include "core/base/text.h"
-#include "core/discrepancy/basis_file.h"
+#include "core/discrepancy/basis_cache.h"
 #include "core/discrepancy/effect_size.h"
-#include "core/record/column_file.h"
 
 namespace fatmc::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr int kMeanFlights = 8, kMostRounds = 4;
 
@@ -42,20 +37,14 @@ FlightProgress flight_progress() {
 /// The basis from the cache, or made and put there. A cache that cannot be written is no reason to fail.
 Result<ComparisonBasis> basis_of(const PreparedRecord& record, const DiagnosedModel& model,
                                  const std::string& cache) {
-  const std::string key = basis_key(record, model);
-  const fs::path file = fs::path(cache) / ("comparison-" + key.substr(0, 16) + ".basis");
-  const FeatureLayout& layout = record.model->extractor().layout();
-  if (auto known = parse_basis(read_file_bytes(file.string()), key, layout, record.grid, record.basis))
-    return std::move(*known);
-  auto made = ComparisonBasis::make(*record.model, record.grid, record.basis, flight_progress());
-  if (!made) return made;
-  try {
-    fs::create_directories(cache);
-    write_file_atomically(file.string(), basis_text(*made, key));
-  } catch (const std::system_error& e) {
-    std::fprintf(stderr, "fatmc: the basis is not kept for the next diagnosis: %s\n", e.what());
+  auto found = cached_basis(
+      {cache, basis_key(record, model)}, record.model->extractor().layout(), record.grid, record.basis,
+      [&] { return ComparisonBasis::make(*record.model, record.grid, record.basis, flight_progress()); });
+  if (!found) return fail(found.error());
+  if (!found->trouble.empty()) {
+    std::fprintf(stderr, "fatmc: the basis is not kept for the next diagnosis: %s\n", found->trouble.c_str());
   }
-  return made;
+  return std::move(found->basis);
 }
 
 /// Records with their bases, ready to be compared. Pointers stay valid while this lives.
@@ -220,8 +209,8 @@ Result<DiagnosisRun> run_diagnosis(const std::string& model_path, const std::vec
     if (round == 0) {
       FastLpm estimator(stack->prepared.front()->grid, 3);
       const ResponseMap& map = stack->bases.front()->map;
-      out.map = map.read(
-          response_vector(estimator, training.front()->record, training.front()->setup.closed_loop));
+      out.map =
+          map.read(response_vector(estimator, training.front()->record, training.front()->setup.closed_loop));
       page.where = places_of(comparison, out.map);
       page.thresholds = comparison.thresholds();
       page.diagnosis = diagnosis;

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "campaigns/registry_summaries.h"
-#include "proto/build_hash.h"
+#include "core/base/build_hash.h"
 
 namespace fatmc::cli {
 

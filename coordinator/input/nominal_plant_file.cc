@@ -11,6 +11,7 @@
 #include "coordinator/input/toml_file.h"
 #include "core/base/text.h"
 #include "core/flight/linear_model.h"
+#include "core/flight/step_parts.h"
 
 namespace fatmc {
 namespace {
@@ -48,15 +49,19 @@ Result<SampledModel> pick_channels(const NamedModel& named, const MeasuredLoop& 
                       named.model.d(*outputs, *inputs)};
 }
 
-Result<NamedModel> aircraft_model(const Tree& tree, const std::string& path, const MeasuredLoop& measured) {
+Result<NamedModel> aircraft_model(const Tree& tree, const std::string& path, const MeasuredLoop& measured,
+                                  std::vector<std::string>& not_shown) {
   if (measured.hold != Hold::zoh) {
     return fail(Error{path, 0, "kind", "an aircraft is sampled with held commands, the record's hold is \"continuous\": "
                                        "give its response as kind = \"frf\""});
   }
   const Result<TrimmedAircraft> trimmed = decode_trimmed_aircraft(tree, path);
   if (!trimmed) return fail(trimmed.error());
+  not_shown = trimmed->not_linear;
   const double tick_s = 1.0 / measured.rate_hz;
-  const int steps = std::max(1, static_cast<int>(std::ceil(tick_s / kLongestStep - 1e-9)));
+  const int whole = std::max(1, static_cast<int>(std::ceil(tick_s / kLongestStep - 1e-9)));
+  const int steps =
+      whole * parts_of_step(trimmed->aircraft, linearize(trimmed->aircraft, trimmed->trim), tick_s / whole);
   const LinearModel linear = sample(trimmed->aircraft, trimmed->trim, tick_s, steps);
   NamedModel out{{linear.a, linear.b, linear.c, linear.d}, {}, {}};
   out.inputs.assign(kInputNames.begin(), kInputNames.end());
@@ -205,10 +210,19 @@ Result<NominalPlant> read_nominal_plant(const std::string& path, const MeasuredL
     if (Status status = table.finish(); !status) return fail(status.error());
     return response_plant((named.parent_path() / file).string(), measured);
   }
+  std::vector<std::string> not_shown;
   const Result<NamedModel> model =
-      kind == "aircraft" ? aircraft_model(*tree, path, measured) : state_space_model(*tree, measured);
+      kind == "aircraft" ? aircraft_model(*tree, path, measured, not_shown) : state_space_model(*tree, measured);
   if (!model) return fail(model.error());
-  return stable_plant(*model, kind, measured, path);
+  Result<NominalPlant> plant = stable_plant(*model, kind, measured, path);
+  if (plant) plant->effects_not_shown = std::move(not_shown);
+  return plant;
+}
+
+std::string effects_not_shown(const NominalPlant& nominal, const std::string& path) {
+  if (nominal.effects_not_shown.empty()) return "";
+  return path + ": not in the nominal plant: " + join(nominal.effects_not_shown) +
+         " (what is judged is the loop around the airframe without; fatmc simulate flies it)";
 }
 
 }  // namespace fatmc

@@ -44,7 +44,12 @@ struct NominalPlant {
   int moved_poles = 0;
   std::optional<double> largest_pole;              ///< |z| before moving; nothing for a response
   std::optional<double> largest_closed_loop_pole;  ///< |z| with K
+  /// Effects of an aircraft's model file that its linearised airframe does not show (aircraft_file.h).
+  std::vector<std::string> effects_not_shown;
 };
+
+/// "MODEL: not in the nominal plant: transport_delay:delay_s=0.03, ... (...)", or nothing where it shows all of them.
+std::string effects_not_shown(const NominalPlant& nominal, const std::string& path);
 
 /// Reads MODEL, picks the channels of `measured` by name, checks stability with and without K, and evaluates G_n.
 Result<NominalPlant> read_nominal_plant(const std::string& path, const MeasuredLoop& measured);

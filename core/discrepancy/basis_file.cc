@@ -7,7 +7,7 @@
 namespace fatmc {
 namespace {
 
-constexpr std::string_view kTitle = "fatmc comparison basis 1\n";
+constexpr std::string_view kTitle = "fatmc comparison basis 2\n";
 
 class Writer {
  public:
@@ -122,11 +122,11 @@ std::optional<ComparisonBasis> parse_basis(const std::string& text, const std::s
   const bool fits = reader.done() && out.law.mean.size() == layout.size && factor.rows() == layout.size &&
                     out.dictionary.differences.cols() == atoms && out.null.score.cols() == atoms &&
                     out.null.group_mean.size() == static_cast<Eigen::Index>(out.groups.size()) &&
-                    out.baseline.cols() == ComparisonBasis::kBaseline &&
+                    out.baseline.cols() == ComparisonBasis::kPaired &&
                     out.map.mean().size() == 9 * grid.line_count();
   if (!fits) return std::nullopt;
   out.law.covariance = LowRankCovariance(std::move(factor));
-  out.atoms = out.law.whiten(layout, out.dictionary.differences);
+  out.complete();
   return out;
 }
 

@@ -1,6 +1,6 @@
 // A comparison basis as a file, so that the next diagnosis of such a record starts from it.
 //
-// A line "fatmc comparison basis 1", a line with the key (a hash of everything the basis depends on), matrices of doubles in
+// A line "fatmc comparison basis 2", a line with the key (a hash of everything the basis depends on), matrices of doubles in
 // a fixed order (rows, columns, values; little endian), and an FNV-1a hash of all that. What follows from the options alone
 // (layout, candidates) is not stored.
 #pragma once

@@ -14,26 +14,10 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
 constexpr int kHeldBack = 5;  // every fifth line
+constexpr int kShift = 37;    // flights by which records are shifted against each other
 
 bool held_out(const FeatureBlock& block) {
   return block.kind == FeatureKind::line && block.line % kHeldBack == 2;
-}
-
-/// With an effect some flights may leave the model where the record's did not: the mean change over those that do not, NaN where
-/// none is left.
-Vector mean_of_survivors(const ModelSimulator& model, const ComparisonBasis& basis,
-                         const std::vector<Effect>& effects, int flights, int threads) {
-  const std::vector<std::vector<Effect>> sets = {effects};
-  Vector sum = Vector::Zero(basis.layout.size);
-  int count = 0;
-  for (int n = 0; n < flights; ++n) {
-    const EffectFlights one = model.fly(sets, n, 1, threads).front();
-    if (!one.usable()) continue;
-    sum += one.features.col(0) - basis.baseline.col(n);
-    ++count;
-  }
-  if (count == 0) return Vector::Constant(basis.layout.size, std::numeric_limits<double>::quiet_NaN());
-  return sum / count;
 }
 
 /// Flights of the records combined: the n-th of each, which are independent where the references differ. Records that share
@@ -49,7 +33,7 @@ Thresholds combine(const std::vector<ComparedRecord>& records, const Matrix& ato
     const ComparisonBasis& basis = *records[i].basis;
     const Vector own = atoms.middleRows(first[i], basis.layout.size).colwise().norm().transpose();
     for (Eigen::Index n = 0; n < flights; ++n) {
-      const Eigen::Index m = (n + static_cast<Eigen::Index>(i) * 37) % flights;
+      const Eigen::Index m = (n + static_cast<Eigen::Index>(i) * kShift) % flights;
       energy[n] += basis.null.energy[m];
       local[n] = std::max(local[n], basis.null.group_score[m]);
       products.row(n) += basis.null.score.row(m).cwiseProduct(own.transpose());
@@ -100,32 +84,47 @@ Comparison::Comparison(std::vector<ComparedRecord> records, int threads)
   }
   discrepancy_.resize(size);
   atoms_.resize(size, dictionary().differences.cols());
+  resonance_atoms_.resize(size, records_.front().basis->resonance_atoms.cols());
+  white_baseline_.resize(size, ComparisonBasis::kPaired);
+  std::vector<bool> usable(dictionary().atoms.size(), true);
   for (std::size_t i = 0; i < records_.size(); ++i) {
     const ComparisonBasis& basis = *records_[i].basis;
     discrepancy_.segment(first_[i], basis.layout.size) =
         basis.law.whiten(basis.layout, records_[i].features - basis.law.mean);
     atoms_.middleRows(first_[i], basis.layout.size) = basis.atoms;
+    resonance_atoms_.middleRows(first_[i], basis.layout.size) = basis.resonance_atoms;
+    for (int n = 0; n < ComparisonBasis::kPaired; ++n) {
+      white_baseline_.col(n).segment(first_[i], basis.layout.size) =
+          basis.white_baseline.col((n + static_cast<int>(i) * kShift) % ComparisonBasis::kPaired);
+    }
+    for (std::size_t a = 0; a < usable.size(); ++a) {
+      usable[a] = usable[a] && !basis.atoms.col(static_cast<Eigen::Index>(a)).isZero(0.0);
+    }
   }
+  curves_ = effect_curves(dictionary(), usable);
   thresholds_ = combine(records_, atoms_, first_);
 }
 
+Eigen::Index Comparison::first_group(std::size_t record) const {
+  Eigen::Index out = 0;
+  for (std::size_t i = 0; i < record; ++i) out += static_cast<Eigen::Index>(records_[i].basis->groups.size());
+  return out;
+}
+
 Matrix Comparison::changes(std::span<const std::vector<Effect>> sets, int flights) const {
-  FATMC_CHECK(flights <= ComparisonBasis::kBaseline, "flights with a baseline");
+  FATMC_CHECK(flights <= ComparisonBasis::kPaired, "flights with a baseline");
   Matrix out(size(), static_cast<Eigen::Index>(sets.size()));
   std::vector<bool> failed(sets.size(), false);
   for (std::size_t i = 0; i < records_.size(); ++i) {
     const ComparisonBasis& basis = *records_[i].basis;
-    const ModelSimulator& model = *records_[i].model;
-    const std::vector<EffectFlights> flown = model.fly(sets, 0, flights, threads_);
-    Matrix difference(basis.layout.size, out.cols());
+    const std::vector<EffectFlights> flown = records_[i].model->fly(sets, 0, flights, threads_);
+    Matrix difference = Matrix::Zero(basis.layout.size, out.cols());
     for (std::size_t s = 0; s < sets.size(); ++s) {
-      const auto at = static_cast<Eigen::Index>(s);
-      if (flown[s].usable()) {
-        difference.col(at) = (flown[s].features - basis.baseline.leftCols(flights)).rowwise().mean();
-      } else {
-        difference.col(at) = mean_of_survivors(model, basis, sets[s], flights, threads_);
-        failed[s] = failed[s] || !difference.col(at).allFinite();
-      }
+      const std::vector<int>& completed = flown[s].completed;
+      failed[s] = failed[s] || 2 * completed.size() < static_cast<std::size_t>(flights);
+      if (completed.empty()) continue;
+      difference.col(static_cast<Eigen::Index>(s)) =
+          (flown[s].features(Eigen::all, completed) - basis.baseline(Eigen::all, completed)).rowwise().mean();
     }
     out.middleRows(first_[i], basis.layout.size) = basis.law.whiten(basis.layout, difference);
   }
@@ -136,43 +135,18 @@ Matrix Comparison::changes(std::span<const std::vector<Effect>> sets, int flight
   return out;
 }
 
-double Comparison::local_score(const Eigen::Ref<const Vector>& z) const {
-  ResidualLaw law;
-  for (const ComparedRecord& r : records_) {
-    law.group_mean.push_back(r.basis->null.group_mean);
-    law.group_deviation.push_back(r.basis->null.group_deviation);
-  }
-  return local_score(z, law);
-}
-
-double Comparison::local_score(const Eigen::Ref<const Vector>& z, const ResidualLaw& law) const {
+double Comparison::local_score(const Eigen::Ref<const Vector>& z,
+                               const Eigen::Ref<const Vector>& excess) const {
   double most = -1e300;
+  Eigen::Index first_group = 0;
   for (std::size_t i = 0; i < records_.size(); ++i) {
     const ComparisonBasis& basis = *records_[i].basis;
-    const Vector sums = group_sums(basis.groups, z.segment(first_[i], basis.layout.size));
-    most = std::max(most, ((sums - law.group_mean[i]).array() / law.group_deviation[i].array()).maxCoeff());
+    Vector above = group_sums(basis.groups, z.segment(first_[i], basis.layout.size)) - basis.null.group_mean;
+    if (excess.size() > 0) above -= excess.segment(first_group, above.size());
+    most = std::max(most, (above.array() / basis.null.group_deviation.array()).maxCoeff());
+    first_group += above.size();
   }
   return most;
-}
-
-std::optional<ResidualLaw> Comparison::residual_law(const std::vector<Effect>& effects, int flights) const {
-  ResidualLaw out;
-  const std::vector<std::vector<Effect>> sets = {effects};
-  for (const ComparedRecord& r : records_) {
-    const ComparisonBasis& basis = *r.basis;
-    // Flights beyond the baseline's: their noise has not been subtracted from anything.
-    const EffectFlights flown = r.model->fly(sets, ComparisonBasis::kBaseline, flights, threads_).front();
-    if (!flown.usable()) return std::nullopt;
-    const Vector mean = flown.features.rowwise().mean();
-    const Matrix z = basis.law.whiten(basis.layout, flown.features.colwise() - mean);
-    const double unbiased = flights / (flights - 1.0);
-    Matrix sums(static_cast<Eigen::Index>(basis.groups.size()), flights);
-    for (int n = 0; n < flights; ++n) sums.col(n) = unbiased * group_sums(basis.groups, z.col(n));
-    out.energy_mean += unbiased * z.squaredNorm() / flights;
-    out.group_mean.push_back(sums.rowwise().mean());
-    out.group_deviation.push_back(floored_deviation(sums.transpose(), out.group_mean.back()));
-  }
-  return out;
 }
 
 std::vector<int> Comparison::held_out_rows() const {

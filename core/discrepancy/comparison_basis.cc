@@ -5,6 +5,8 @@
 #include <memory>
 #include <mutex>
 
+#include "core/base/check.h"
+#include "core/discrepancy/resonance.h"
 #include "core/ident/fast_lpm.h"
 
 namespace fatmc {
@@ -145,8 +147,38 @@ std::vector<FeatureGroup> feature_groups(const FeatureLayout& layout) {
   return out;
 }
 
+void ComparisonBasis::complete() {
+  atoms = law.whiten(layout, dictionary.differences);
+  white_baseline = law.whiten(layout, baseline.colwise() - law.mean);
+  baseline_variance.resize(static_cast<Eigen::Index>(groups.size()));
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    baseline_variance[static_cast<Eigen::Index>(g)] =
+        white_baseline(groups[g].rows, Eigen::all).squaredNorm() /
+        static_cast<double>(groups[g].rows.size() * kPaired);
+  }
+  resonances.clear();
+  std::vector<Matrix> parts;
+  Eigen::Index count = 0;
+  for (std::size_t a = 0; a < dictionary.atoms.size(); ++a) {
+    const Atom& atom = dictionary.atoms[a];
+    if (broad_resonance(atom.effect) != atom.effect) continue;
+    ResonanceGrid grid =
+        resonance_grid(layout, atom.effect, dictionary.differences.col(static_cast<Eigen::Index>(a)));
+    for (Effect& effect : grid.effects) resonances.push_back({std::move(effect), atom.variant});
+    parts.push_back(law.whiten(layout, grid.differences));
+    count += parts.back().cols();
+  }
+  resonance_atoms.resize(layout.size, count);
+  Eigen::Index first = 0;
+  for (const Matrix& part : parts) {
+    resonance_atoms.middleCols(first, part.cols()) = part;
+    first += part.cols();
+  }
+}
+
 Result<ComparisonBasis> ComparisonBasis::make(const ModelSimulator& model, const LpmGrid& grid,
                                               const BasisOptions& options, const FlightProgress& progress) {
+  FATMC_CHECK(options.flights >= kPaired, "flights of the model are kept");
   ComparisonBasis out;
   out.layout = model.extractor().layout();
   out.groups = feature_groups(out.layout);
@@ -161,20 +193,21 @@ Result<ComparisonBasis> ComparisonBasis::make(const ModelSimulator& model, const
   auto flown = fly_null(model, grid, options, stage);
   if (!flown) return fail(flown.error());
   before += options.flights;
-  out.baseline = flown->features.topRows(kBaseline).transpose();
+  out.baseline = flown->features.topRows(kPaired).transpose();
   Matrix uncertainty(out.layout.size, nuisances);
   for (int i = 0; i < nuisances; ++i) {
     const Nuisance& nuisance = options.nuisances[static_cast<std::size_t>(i)];
     const std::vector<std::vector<Effect>> sets = {{nuisance.effect}};
     const EffectFlights changed = model.fly(sets, 0, kBaseline, options.threads, stage).front();
     if (!changed.usable()) return fail(nuisance.effect.text() + " cannot be flown: " + changed.failure);
-    uncertainty.col(i) = nuisance.scale * (changed.features - out.baseline).rowwise().mean();
+    uncertainty.col(i) =
+        nuisance.scale * (changed.features - out.baseline.leftCols(kBaseline)).rowwise().mean();
     before += kBaseline;
   }
   out.dictionary = make_dictionary(model, options.excluded, out.baseline, options.threads, stage);
   out.law = NullLaw::fit(out.layout, flown->features);
   out.law.add_uncertainty(out.layout, uncertainty);
-  out.atoms = out.law.whiten(out.layout, out.dictionary.differences);
+  out.complete();
   out.null = cross_validate(out, flown->features, uncertainty);
   out.map = ResponseMap::fit(grid, flown->responses);
   return out;

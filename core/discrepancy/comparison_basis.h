@@ -53,17 +53,27 @@ struct NullStatistics {
 };
 
 struct ComparisonBasis {
-  static constexpr int kFolds = 4, kBaseline = 8;
+  /// kPaired: flights of the model whose features are kept, so that flights with effects and the same noise can be set
+  /// against them; kBaseline: as many as a mean change is usually taken over.
+  static constexpr int kFolds = 4, kBaseline = 8, kPaired = 200;
 
   FeatureLayout layout;
   std::vector<FeatureGroup> groups;
   NullLaw law;
-  Eigen::MatrixXd baseline;  ///< features of the model's flights 0 ... kBaseline-1, a column each
+  Eigen::MatrixXd baseline;        ///< features of the model's flights 0 ... kPaired-1, a column each
+  Eigen::MatrixXd white_baseline;  ///< the same less the mean, whitened
+  Eigen::VectorXd
+      baseline_variance;  ///< of every group, mean over its features: 1, less where a floor stands for it
   Dictionary dictionary;
   Eigen::MatrixXd atoms;  ///< signatures, whitened by the law
+  /// Flexible modes on a fine grid (resonance.h): effect, index of its variant, white signature.
+  std::vector<Atom> resonances;
+  Eigen::MatrixXd resonance_atoms;
   NullStatistics null;
   ResponseMap map;
 
+  /// Fills what follows from law, dictionary and layout alone.
+  void complete();
   /// `progress` counts flights over all stages.
   static Result<ComparisonBasis> make(const ModelSimulator& model, const LpmGrid& grid,
                                       const BasisOptions& options, const FlightProgress& progress = {});

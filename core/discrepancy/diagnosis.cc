@@ -1,28 +1,45 @@
 #include "core/discrepancy/diagnosis.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/discrepancy/effect_knowledge.h"
 #include "core/discrepancy/effect_selection.h"
 #include "core/discrepancy/effect_size.h"
+#include "core/stats/intervals.h"
 
 namespace fatmc {
 namespace {
+
+/// Candidate with the largest gain on the discrepancy.
+std::string leading_effect(const Comparison& comparison, const DiagnosisOptions& options) {
+  for (const Candidate& c : scan_candidates(comparison, comparison.discrepancy(),
+                                            Eigen::MatrixXd(comparison.size(), 0), Eigen::VectorXd())) {
+    if (std::find(options.excluded.begin(), options.excluded.end(), c.effect.id) == options.excluded.end()) {
+      return c.effect.name();
+    }
+  }
+  return "";
+}
 
 Gap gap_of(double before, double after, double floor, double count) {
   return {before / count, after / count, floor / count};
 }
 
-/// 95 % intervals of the effects' parameters.
-std::vector<FoundEffect> found_effects(const EffectSelection& selection, const EffectFit& fit, int flights) {
+/// 95 % intervals of the effects' parameters: t +- quantile times deviation of (J^T W^-2 J)^-1 J^T W^-2 r (fitted_law.h).
+std::vector<FoundEffect> found_effects(const EffectSelection& selection, const Explanation& e) {
   std::vector<FoundEffect> out;
-  for (const Effect& effect : fit.effects) out.push_back({effect, {}, 0.0});
-  const std::vector<FreeParameter> free = free_parameters(fit.effects);
+  for (const Effect& effect : e.fit.effects) out.push_back({effect, {}, 0.0});
+  const std::vector<FreeParameter> free = free_parameters(e.fit.effects);
+  const Eigen::MatrixXd j = e.weighted_jacobian();
+  const Eigen::MatrixXd inverse = j.completeOrthogonalDecomposition().pseudoInverse();
+  const FittedLaw::Spread spread = e.law.spread(inverse * e.law.deviation().cwiseInverse().asDiagonal());
   for (std::size_t i = 0; i < free.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    const double t = natural_value(fit.effects, free[i]);
-    const double half = 1.959963984540054 * std::sqrt(fit.covariance(at, at));
+    const double t = natural_value(e.fit.effects, free[i]);
+    const double half = t_quantile(0.975, spread.dof[at]) * spread.deviation[at];
     FoundEffect& found = out[static_cast<std::size_t>(free[i].effect)];
     const EffectParameter& kind = found.effect.kind().parameters[static_cast<std::size_t>(free[i].parameter)];
     const auto back = [&](double x) { return from_natural(kind, std::clamp(x, free[i].low, free[i].high)); };
@@ -30,78 +47,62 @@ std::vector<FoundEffect> found_effects(const EffectSelection& selection, const E
         {std::string(kind.name), std::string(kind.unit), back(t), back(t - half), back(t + half)});
   }
   if (out.size() == 1) {
-    out.front().gain = selection.nothing().cost - fit.cost;
-    return out;
-  }
-  for (std::size_t e = 0; e < out.size(); ++e) {
-    std::vector<Effect> rest = fit.effects;
-    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(e));
-    const EffectFit less = selection.refitted(rest, flights);
-    if (less.usable()) out[e].gain = less.cost - fit.cost;
+    out.front().gain = selection.nothing().fit.cost - e.fit.cost;
+  } else {
+    for (std::size_t i = 0; i < out.size(); ++i) out[i].gain = selection.alternative(e, i).own;
   }
   return out;
-}
-
-/// What the largest GLR of a further signature exceeds by chance in 1 % of records where the effects found so far shape the
-/// noise: from flights of the model with them. An effect that lets the aircraft bank further, say, scatters means and trims
-/// more than the model's own law allows, and would be followed by a bias that is none. 0 where a flight leaves the model.
-double scan_limit(const Comparison& comparison, const EffectFit& fit) {
-  constexpr int kFlights = 60;
-  const std::vector<std::vector<Effect>> sets = {fit.effects};
-  Eigen::MatrixXd z(comparison.size(), kFlights);
-  for (std::size_t i = 0; i < comparison.records().size(); ++i) {
-    const ComparedRecord& record = comparison.records()[i];
-    const EffectFlights flown = record.model->fly(sets, ComparisonBasis::kBaseline, kFlights, 1).front();
-    if (!flown.usable()) return 0.0;
-    const Eigen::VectorXd mean = flown.features.rowwise().mean();
-    z.middleRows(comparison.first_row(i), record.basis->layout.size) =
-        record.basis->law.whiten(record.basis->layout, flown.features.colwise() - mean);
-  }
-  std::vector<double> largest;
-  for (int n = 0; n < kFlights; ++n) {
-    double most = 0.0;
-    for (const ScanHit& hit : scan_signatures(z.col(n), comparison.atoms(), fit.jacobian))
-      most = std::max(most, hit.glr);
-    largest.push_back(most);
-  }
-  return tail_quantile(std::move(largest), 0.01);
 }
 
 /// Rivals of the last effect that explain the records as well.
-std::vector<EffectFit> equals_of(const EffectSelection& selection, const EffectFit& best,
-                                 std::vector<EffectFit> rivals, int flights) {
-  std::vector<EffectFit> out;
-  for (EffectFit& rival : rivals) {
-    if (rival.effects.back().name() == best.effects.back().name()) continue;
-    if (rival.effects.size() != best.effects.size()) continue;
-    if (rival.cost > best.cost + 4.0 * kClassGain) continue;  // screening is coarse
-    rival = selection.refitted(rival.effects, flights);
-    if (rival.usable() && rival.cost < best.cost + kClassGain && selection.adequate(rival))
-      out.push_back(rival);
+std::vector<Explanation> equals_of(const Explanation& best, std::vector<Explanation> rivals) {
+  std::erase_if(rivals, [&](const Explanation& rival) {
+    return rival.fit.effects.size() != best.fit.effects.size() ||
+           rival.fit.effects.back().name() == best.fit.effects.back().name() || !rival.adequate ||
+           EffectSelection::cost(rival, best.law) > best.fit.cost + kClassGain;
+  });
+  return rivals;
+}
+
+/// Forward steps from the model as it is; `rivals`: explanations by one effect, where that is what the result has.
+Explanation searched(const EffectSelection& selection, const DiagnosisOptions& options, bool far,
+                     std::vector<Explanation>& rivals) {
+  Explanation best = selection.nothing();
+  rivals.clear();
+  while (static_cast<int>(best.fit.effects.size()) < options.most_effects) {
+    // Half of what is required: the linear ratio of a signature may fall short of the fit's gain.
+    if (best.adequate && selection.largest_ratio(best) < 0.5 * selection.scan_threshold()) break;
+    const bool first = best.fit.effects.empty();
+    std::vector<Explanation> next = selection.extended(best, far && first);
+    if (far && first) std::erase_if(next, [](const Explanation& e) { return !e.adequate; });
+    if (next.empty() || !selection.accepted(best, next.front())) break;
+    best = next.front();
+    if (best.fit.effects.size() == 1) rivals = std::move(next);
+    if (best.fit.effects.size() > 1) best = selection.exchanged(selection.pruned(std::move(best)));
   }
-  return out;
+  return best;
 }
 
 void measure_gaps(const Comparison& comparison, const Comparison* holdout, const EffectSelection& selection,
-                  const EffectFit& fit, const DiagnosisOptions& options, Diagnosis& out) {
+                  const Explanation& e, Diagnosis& out) {
   const double all = static_cast<double>(comparison.size());
   const double mean = comparison.thresholds().energy_mean / all;
   if (holdout != nullptr) {
     const auto held = static_cast<double>(holdout->size());
     out.holdout_lines = false;
-    out.training =
-        gap_of(comparison.discrepancy().squaredNorm(), fit.residual.squaredNorm(), mean * all, all);
+    out.training = gap_of(comparison.discrepancy().squaredNorm(), e.fit.cost, mean * all, all);
     double after = holdout->discrepancy().squaredNorm();
-    if (!fit.effects.empty()) {
-      const std::vector<std::vector<Effect>> sets = {fit.effects};
-      after = (holdout->discrepancy() - holdout->changes(sets, options.final_flights).col(0)).squaredNorm();
+    if (!e.fit.effects.empty()) {
+      const auto law = FittedLaw::of(*holdout, e.fit.effects, FittedLaw::kFlights);
+      after = law ? (holdout->discrepancy() - law->change()).cwiseQuotient(law->deviation()).squaredNorm()
+                  : std::numeric_limits<double>::infinity();
     }
     out.holdout =
         gap_of(holdout->discrepancy().squaredNorm(), after, holdout->thresholds().energy_mean, held);
     return;
   }
   const std::vector<int> training = comparison.training_rows(), held = comparison.held_out_rows();
-  const Eigen::VectorXd residual = selection.trained_residual(fit);
+  const Eigen::VectorXd residual = selection.trained_residual(e);
   const auto ratio = [&](const std::vector<int>& rows) {
     const auto n = static_cast<double>(rows.size());
     return gap_of(comparison.discrepancy()(rows).squaredNorm(), residual(rows).squaredNorm(), mean * n, n);
@@ -136,61 +137,44 @@ Diagnosis diagnose(const Comparison& comparison, const Comparison* holdout, cons
   const EffectSelection selection(comparison, holdout, options);
   const Thresholds& limit = comparison.thresholds();
   Diagnosis out;
-  EffectFit fit = selection.nothing();
-  const std::vector<ScanHit> first = selection.hits(fit);
-  out.evidence.scan = first.empty() ? 0.0 : first.front().glr;
-  if (!first.empty()) {
-    out.evidence.leading =
-        comparison.dictionary().atoms[static_cast<std::size_t>(first.front().atom)].effect.name();
-  }
-  out.evidence.energy = fit.cost;
-  out.evidence.local = comparison.local_score(fit.residual);
+  Explanation best = selection.nothing();
+  out.evidence.scan = selection.largest_ratio(best);
+  out.evidence.leading = leading_effect(comparison, options);
+  out.evidence.energy = best.fit.cost;
+  out.evidence.local = comparison.local_score(best.fit.residual);
   const bool detected = out.evidence.scan > limit.scan || out.evidence.energy > limit.energy ||
                         out.evidence.local > limit.local;
 
-  std::vector<EffectFit> rivals;
-  while (detected && static_cast<int>(fit.effects.size()) < options.most_effects) {
-    // Half of what is required: the linear ratio of a signature may fall short of the fit's gain.
-    const std::vector<ScanHit> hits = selection.hits(fit);
-    if (hits.empty() || hits.front().glr < 0.5 * limit.scan) break;
-    std::vector<EffectFit> next = selection.extended(fit);
-    if (next.empty() || !selection.accepted(fit, next.front(), next.front().effects.back())) break;
-    if (!fit.effects.empty() && fit.cost - next.front().cost < scan_limit(comparison, fit)) break;
-    fit = selection.exchanged(selection.pruned(next.front()));
-    if (fit.effects.size() == 1) rivals = std::move(next);
-  }
-  if (!fit.effects.empty()) {
-    EffectFit refined = selection.refitted(fit.effects, options.final_flights);
-    if (refined.usable()) fit = std::move(refined);
-  }
-
-  const bool adequate = selection.adequate(fit);
-  if (!fit.effects.empty()) out.effects = found_effects(selection, fit, options.screening_flights);
-  if (fit.effects.empty()) {
-    out.verdict = adequate ? Verdict::none : Verdict::unknown;
-  } else {
-    out.verdict = adequate ? Verdict::named : Verdict::unknown;
-    if (fit.effects.size() == 1 && adequate) {
-      const std::vector<EffectFit> equals =
-          equals_of(selection, fit, std::move(rivals), options.final_flights);
-      if (!equals.empty()) {
-        out.verdict = Verdict::effect_class;
-        out.members.push_back(fit.effects.front());
-        std::vector<std::string> ids = {fit.effects.front().id};
-        for (const EffectFit& one : equals) {
-          out.members.push_back(one.effects.front());
-          ids.push_back(one.effects.front().id);
-        }
-        out.separate_by = separating_experiment(ids);
-      }
+  std::vector<Explanation> rivals;
+  if (detected) {
+    best = searched(selection, options, false, rivals);
+    // Nothing close to the leading candidate explains it: others have their turn before the answer is "unknown".
+    if (!best.adequate) {
+      Explanation other = searched(selection, options, true, rivals);
+      if (other.adequate || best.fit.effects.empty()) best = std::move(other);
     }
   }
-  const std::vector<ScanHit> left = selection.hits(fit);
-  out.evidence.scan_left = left.empty() ? 0.0 : left.front().glr;
-  out.evidence.energy_left = fit.residual.squaredNorm();
-  out.evidence.local_left = comparison.local_score(fit.residual);
-  out.residual = fit.residual;
-  measure_gaps(comparison, holdout, selection, fit, options, out);
+
+  if (!best.fit.effects.empty()) out.effects = found_effects(selection, best);
+  out.verdict = !best.adequate ? Verdict::unknown : best.fit.effects.empty() ? Verdict::none : Verdict::named;
+  if (out.verdict == Verdict::named && best.fit.effects.size() == 1) {
+    const std::vector<Explanation> equals = equals_of(best, std::move(rivals));
+    if (!equals.empty()) {
+      out.verdict = Verdict::effect_class;
+      out.members.push_back(best.fit.effects.front());
+      std::vector<std::string> ids = {best.fit.effects.front().id};
+      for (const Explanation& one : equals) {
+        out.members.push_back(one.fit.effects.front());
+        ids.push_back(one.fit.effects.front().id);
+      }
+      out.separate_by = separating_experiment(ids);
+    }
+  }
+  out.evidence.scan_left = selection.largest_ratio(best);
+  out.evidence.energy_left = best.fit.cost;
+  out.evidence.local_left = comparison.local_score(best.weighted_residual(), best.law.group_excess());
+  out.residual = best.weighted_residual();
+  measure_gaps(comparison, holdout, selection, best, out);
   return out;
 }
 

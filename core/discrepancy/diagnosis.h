@@ -2,12 +2,13 @@
 // something that no known effect explains.
 //
 // 1. Detect: largest signature GLR, energy z^T z, largest local group, each against its own threshold (Thresholds).
-// 2. Name: the leading signatures are fitted with real simulations; the one with the smallest residual is taken if it gains
-//    more than max(scan threshold, 2 p ln(V/alpha)) for p parameters and V candidates, lowers the error on what is held
-//    back, and is material. Then the next, on what is left (forward); effects that have lost their gain are dropped
-//    (backward); each is tried against its rivals (swap).
-// 3. Judge: the residual must be what chance gives, but for a share of the discrepancy that simulation with few flights and
-//    a covariance taken at the nominal model cannot resolve (kResolution). Else the answer is unknown.
+// 2. Name: likelihoods are followed along the dictionary (candidate_scan.h); the leading candidates, as far as they are close, are
+//    fitted with real simulations. The best is taken if it gains more than max(scan threshold, 2 p ln(V/alpha)) for p
+//    parameters and V candidates, lowers the error on what is held back, and is material. Then the next, on what is left
+//    (forward), by the law of chance that the effects so far make (fitted_law.h); effects that have lost their gain are
+//    dropped (backward); each is tried against its rivals (swap).
+// 3. Judge: the residual must be what chance gives with the effects, the error of the mean over few flights included, but for
+//    kResolution of the discrepancy. Else the answer is unknown.
 // 4. Class: rivals whose fits are as good to within kClassGain.
 #pragma once
 
@@ -22,10 +23,9 @@ enum class Verdict { none, named, effect_class, unknown };
 std::string_view name(Verdict verdict);
 
 struct DiagnosisOptions {
-  int most_effects = 3;
-  int rivals = 4;  ///< signatures that are fitted in a forward step
-  int screening_flights = 2;
-  int final_flights = 6;
+  int most_effects = 2;  ///< at once; what more there is, the next round finds with the patched model
+  int rivals = 3;        ///< candidates that are fitted in a forward step, at most
+  int fit_flights = 2;   ///< behind a step of a fit; intervals and verdicts rest on FittedLaw::kFlights
   std::vector<std::string> excluded;  ///< ids of candidates that are left out of this one search
 };
 
@@ -65,11 +65,11 @@ struct Diagnosis {
   [[nodiscard]] std::vector<Effect> effect_list() const;
 };
 
-constexpr double kNamingLevel = 0.01;     ///< alpha of 2 p ln(V/alpha)
-constexpr double kResolution = 0.01;      ///< of the discrepancy's excess energy
-constexpr double kMaterialShare = 0.005;  ///< of that energy: the least gain of a further effect
-constexpr double kMaterialSize = 0.05;    ///< of the least moderate size
-constexpr double kClassGain = 10.6;       ///< 2 ln of a likelihood ratio of 200
+constexpr double kNamingLevel = 0.01;    ///< alpha of 2 p ln(V/alpha)
+constexpr double kResolution = 5e-4;     ///< of the discrepancy's excess energy
+constexpr double kMaterialShare = 5e-4;  ///< of that energy: the least gain of a further effect
+constexpr double kMaterialSize = 0.05;   ///< of the least moderate size
+constexpr double kClassGain = 10.6;      ///< 2 ln of a likelihood ratio of 200
 
 /// `holdout`: records that take no part in the fit, or null.
 Diagnosis diagnose(const Comparison& comparison, const Comparison* holdout, const DiagnosisOptions& options);

@@ -1,9 +1,11 @@
 #include "core/discrepancy/dictionary.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/discrepancy/effect_knowledge.h"
 #include "core/discrepancy/effect_size.h"
+#include "core/discrepancy/resonance.h"
 
 namespace fatmc {
 namespace {
@@ -34,18 +36,26 @@ std::vector<std::vector<double>> shape_grid(const EffectKind& kind, const std::v
   return out;
 }
 
-/// Sizes of one strength. What a limit does depends on how far it is met: three of them, and a mild one beyond.
+/// Sizes of one strength. What a limit does depends on how far it is met: more of them, and milder ones beyond.
 /// Resonances are linear in their strength and need many places instead: one size of them is enough.
 std::vector<double> strengths(const EffectParameter& parameter, bool one_size) {
   std::vector<double> wanted;
   if (is_limit(parameter)) {
-    for (const double place : {0.0, 0.5, 1.0, 1.5}) wanted.push_back(parameter.moderate(place, false));
+    for (const double place : {-0.3, 0.0, 0.33, 0.67, 1.0, 1.4, 1.8}) {
+      wanted.push_back(parameter.moderate(place, false));
+    }
   } else {
     const double least = place_of_least(parameter);
+    const double zero = to_natural(parameter, parameter.nominal);
     for (const bool mirrored : {false, true}) {
       if (mirrored && parameter.mirror == EffectParameter::Mirror::none) continue;
-      if (!one_size) wanted.push_back(parameter.toward(parameter.moderate(least, mirrored), kSmall));
-      wanted.push_back(parameter.moderate(1.0 - least, mirrored));
+      const double first = parameter.moderate(least, mirrored),
+                   last = parameter.moderate(1.0 - least, mirrored);
+      wanted.push_back(last);
+      if (one_size) continue;
+      const double ratio = (to_natural(parameter, last) - zero) / (to_natural(parameter, first) - zero);
+      for (const double share : {kSmall, 1.0, std::sqrt(ratio)})
+        wanted.push_back(parameter.toward(first, share));
     }
   }
   std::erase_if(wanted, [&](double value) { return value < parameter.low || value > parameter.high; });
@@ -81,6 +91,8 @@ std::vector<Atom> signature_effects(const std::vector<Effect>& variants) {
         }
       }
     }
+    if (const std::optional<Effect> broad = broad_resonance(variants[v]))
+      out.push_back({*broad, static_cast<int>(v)});
   }
   return out;
 }
@@ -96,9 +108,10 @@ Dictionary make_dictionary(const ModelSimulator& model, const std::vector<std::s
   const std::vector<EffectFlights> flown = model.fly(sets, 0, Dictionary::kFlights, threads, progress);
   out.differences.setZero(baseline.rows(), static_cast<Eigen::Index>(out.atoms.size()));
   for (std::size_t a = 0; a < out.atoms.size(); ++a) {
-    if (!flown[a].usable()) continue;
+    const std::vector<int>& completed = flown[a].completed;
+    if (2 * completed.size() < static_cast<std::size_t>(Dictionary::kFlights)) continue;
     out.differences.col(static_cast<Eigen::Index>(a)) =
-        (flown[a].features - baseline.leftCols(Dictionary::kFlights)).rowwise().mean();
+        (flown[a].features(Eigen::all, completed) - baseline(Eigen::all, completed)).rowwise().mean();
   }
   return out;
 }

@@ -22,15 +22,16 @@ struct Dictionary {
   Eigen::MatrixXd differences;  ///< layout size x atoms; zero where the effect cannot be flown at that size
 
   /// Flights behind a signature, with common random numbers.
-  static constexpr int kFlights = 2;
+  static constexpr int kFlights = 4;
 };
 
 /// Candidates of a diagnosis: every choice of the effects that effect_knowledge.h describes, without those whose id or name
 /// is in `excluded`.
 std::vector<Effect> candidate_variants(const std::vector<std::string>& excluded);
 
-/// Effects at the sizes that signatures are taken at: from every strength a quarter of the least and the whole of the
-/// largest moderate size, on either side of nominal; shapes (the frequency of a mode) on a grid.
+/// Effects at the sizes that signatures are taken at: from every strength a quarter and the whole of the least moderate size, the
+/// largest, and their geometric mean, on either side of nominal, so that likelihoods can be followed along the size
+/// (effect_curve.h); shapes (the frequency of a mode) on a grid.
 std::vector<Atom> signature_effects(const std::vector<Effect>& variants);
 
 /// Signatures of all candidates. Effects that cannot be flown at a size have no signature at it (zeros); `baseline` holds the

@@ -12,21 +12,22 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
+constexpr double kShapeRange = 3.0;  // beyond the usual range of a shape, as a factor
+
 /// What the fit knows at one t.
 struct Point {
   Vector t;
-  Vector residual;  ///< all rows
+  Vector residual;
   double cost = 0.0;
 };
 
 class Search {
  public:
-  Search(const Comparison& comparison, std::vector<Effect> start, const std::vector<int>& rows,
-         const FitOptions& options)
+  Search(const Comparison& comparison, std::vector<Effect> start, const Vector& deviation, int flights)
       : comparison_(comparison),
         effects_(std::move(start)),
-        rows_(rows),
-        options_(options),
+        inverse_(deviation.size() == 0 ? Vector::Ones(comparison.size()) : Vector(deviation.cwiseInverse())),
+        flights_(flights),
         free_(free_parameters(effects_)) {}
 
   [[nodiscard]] const std::vector<FreeParameter>& free() const { return free_; }
@@ -44,71 +45,50 @@ class Search {
     }
     return t;
   }
-  [[nodiscard]] double cost(const Vector& residual) const {
-    if (rows_.empty()) return residual.squaredNorm();
-    double sum = 0.0;
-    for (const int r : rows_) sum += residual[r] * residual[r];
-    return sum;
-  }
-  [[nodiscard]] Matrix fitted(const Matrix& all) const {
-    if (rows_.empty()) return all;
-    Matrix out(static_cast<Eigen::Index>(rows_.size()), all.cols());
-    for (std::size_t i = 0; i < rows_.size(); ++i) out.row(static_cast<Eigen::Index>(i)) = all.row(rows_[i]);
-    return out;
-  }
+  /// W^-1 B.
+  [[nodiscard]] Matrix weighted(const Matrix& b) const { return inverse_.asDiagonal() * b; }
 
-  /// Residuals at several t in one go; false where a flight fails.
-  [[nodiscard]] Matrix residuals(const std::vector<Vector>& points) const {
-    std::vector<std::vector<Effect>> sets;
-    for (const Vector& t : points) sets.push_back(at(t));
-    return (-comparison_.changes(sets, options_.flights)).colwise() + comparison_.discrepancy();
-  }
+  bool evaluate(Point& point) const { return linearise(point, nullptr); }
 
-  bool evaluate(Point& point) const {
-    const Matrix r = residuals({point.t});
-    if (!r.allFinite()) return false;
-    point.residual = r.col(0);
-    point.cost = cost(point.residual);
-    return true;
-  }
-
-  /// Residual and Jacobian; the differences step away from the nearer end of the range.
-  bool linearise(Point& point, Matrix& jacobian) const {
-    std::vector<Vector> points = {point.t};
-    Vector step(point.t.size());
-    for (std::size_t i = 0; i < free_.size(); ++i) {
-      const auto at = static_cast<Eigen::Index>(i);
-      step[at] = point.t[at] + free_[i].step <= free_[i].high ? free_[i].step : -free_[i].step;
-      points.push_back(point.t);
-      points.back()[at] += step[at];
+  /// Residual, and with `jacobian` its negative derivative; the differences step away from the nearer end of the range.
+  bool linearise(Point& point, Matrix* jacobian) const {
+    std::vector<std::vector<Effect>> sets = {at(point.t)};
+    Vector steps(point.t.size());
+    for (std::size_t i = 0; jacobian != nullptr && i < free_.size(); ++i) {
+      const auto p = static_cast<Eigen::Index>(i);
+      steps[p] = point.t[p] + free_[i].step <= free_[i].high ? free_[i].step : -free_[i].step;
+      Vector t = point.t;
+      t[p] += steps[p];
+      sets.push_back(at(t));
     }
-    const Matrix r = residuals(points);
-    if (!r.allFinite()) return false;
-    point.residual = r.col(0);
-    point.cost = cost(point.residual);
-    jacobian = r.rightCols(step.size());
-    for (Eigen::Index i = 0; i < step.size(); ++i) jacobian.col(i) = (r.col(0) - jacobian.col(i)) / step[i];
+    const Matrix changes = comparison_.changes(sets, flights_);
+    if (!changes.allFinite()) return false;
+    point.residual = comparison_.discrepancy() - changes.col(0);
+    point.cost = point.residual.cwiseProduct(inverse_).squaredNorm();
+    if (jacobian == nullptr) return true;
+    *jacobian =
+        (changes.rightCols(steps.size()).colwise() - changes.col(0)) * steps.cwiseInverse().asDiagonal();
     return true;
   }
 
  private:
   const Comparison& comparison_;
   std::vector<Effect> effects_;
-  const std::vector<int>& rows_;
-  const FitOptions& options_;
+  Vector inverse_;
+  int flights_;
   std::vector<FreeParameter> free_;
 };
 
 /// The step of (J^T J + damping diag) d = J^T r, inside the ranges.
-Vector damped_step(const Search& search, const Point& at, const Matrix& normal, const Vector& gradient,
-                   double damping) {
+Vector damped_step(const std::vector<FreeParameter>& free, const Vector& from, const Matrix& normal,
+                   const Vector& gradient, double damping) {
   Matrix damped = normal;
   damped.diagonal() *= 1.0 + damping;
   damped.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff() + 1e-300;
-  Vector t = at.t + damped.llt().solve(gradient);
-  for (std::size_t i = 0; i < search.free().size(); ++i) {
+  Vector t = from + damped.llt().solve(gradient);
+  for (std::size_t i = 0; i < free.size(); ++i) {
     const auto p = static_cast<Eigen::Index>(i);
-    t[p] = std::clamp(t[p], search.free()[i].low, search.free()[i].high);
+    t[p] = std::clamp(t[p], free[i].low, free[i].high);
   }
   return t;
 }
@@ -124,7 +104,8 @@ std::vector<FreeParameter> free_parameters(const std::vector<Effect>& effects) {
       FreeParameter free{static_cast<int>(e), static_cast<int>(p), to_natural(parameter, parameter.low),
                          to_natural(parameter, parameter.high), 0.0};
       // A tenth of the least moderate size: far above rounding, well inside what is nearly linear. Limits and shapes have
-      // no such size: 2 % of a limit, a thirtieth of the range that the shape is usually in.
+      // no such size: 2 % of a limit, a three-hundredth of the range that the shape is usually in (0.4 % of a mode's
+      // frequency, whose peak may be 4 % wide).
       if (is_limit(parameter)) {
         free.step = 0.02;
       } else if (parameter.strength) {
@@ -132,9 +113,14 @@ std::vector<FreeParameter> free_parameters(const std::vector<Effect>& effects) {
       } else {
         free.step = std::abs(to_natural(parameter, parameter.moderate_high) -
                              to_natural(parameter, parameter.moderate_low)) /
-                    30.0;
+                    300.0;
       }
       if (free.step == 0.0) free.step = 1e-3 * (free.high - free.low);
+      // A mode of high damping far outside its usual place is a gain, and would be named for one.
+      if (!parameter.strength && parameter.moderate_low > 0.0) {
+        free.low = std::max(free.low, to_natural(parameter, parameter.moderate_low / kShapeRange));
+        free.high = std::min(free.high, to_natural(parameter, parameter.moderate_high * kShapeRange));
+      }
       out.push_back(free);
     }
   }
@@ -155,31 +141,31 @@ void set_natural_value(std::vector<Effect>& effects, const FreeParameter& free, 
       std::clamp(from_natural(kind, t), kind.low, kind.high);  // exp(log(x)) may pass an end by a rounding
 }
 
-EffectFit fit_effects(const Comparison& comparison, std::vector<Effect> start, const std::vector<int>& rows,
-                      const FitOptions& options) {
-  const Search search(comparison, std::move(start), rows, options);
+EffectFit fit_effects(const Comparison& comparison, std::vector<Effect> start,
+                      const Eigen::Ref<const Vector>& deviation, const FitOptions& options) {
+  const Search search(comparison, std::move(start), deviation, options.flights);
   EffectFit out;
   Point at;
   at.t = search.start();
-  Matrix jacobian;
-  if (!search.linearise(at, jacobian)) return out;
+  if (!search.linearise(at, &out.jacobian)) return out;
   bool current = true;  // the Jacobian is that of `at`
   out.ending = EffectFit::Ending::iterations;
   double damping = 1e-3;
   for (out.steps = 0; out.steps < options.iterations; ++out.steps) {
-    if (!current && !search.linearise(at, jacobian)) break;
+    if (!current && !search.linearise(at, &out.jacobian)) break;
     current = true;
-    const Matrix j = search.fitted(jacobian);
+    const double tolerance = options.enough + options.relative * at.cost;
+    const Matrix j = search.weighted(out.jacobian);
     const Matrix normal = j.transpose() * j;
-    const Vector gradient = j.transpose() * search.fitted(at.residual);
+    const Vector gradient = j.transpose() * search.weighted(at.residual);
     Point next;
     double predicted = 0.0;
     bool better = false;
     for (int attempt = 0; attempt < 4 && !better; ++attempt, damping *= 8.0) {
-      next.t = damped_step(search, at, normal, gradient, damping);
+      next.t = damped_step(search.free(), at.t, normal, gradient, damping);
       const Vector step = next.t - at.t;
       predicted = 2.0 * gradient.dot(step) - step.dot(normal * step);
-      if (predicted < options.enough + options.relative * at.cost) break;
+      if (predicted < tolerance) break;
       better = search.evaluate(next) && next.cost < at.cost;
     }
     if (!better) {
@@ -188,8 +174,7 @@ EffectFit fit_effects(const Comparison& comparison, std::vector<Effect> start, c
     }
     damping = std::max(1e-6, damping / 64.0);
     // A step that did what the linear model promised leaves a minimum to within what is enough.
-    const bool as_promised =
-        std::abs(at.cost - next.cost - predicted) < options.enough + options.relative * at.cost;
+    const bool as_promised = std::abs(at.cost - next.cost - predicted) < tolerance;
     at = std::move(next);
     current = false;
     if (as_promised) {
@@ -201,12 +186,27 @@ EffectFit fit_effects(const Comparison& comparison, std::vector<Effect> start, c
   out.effects = search.at(at.t);
   out.cost = at.cost;
   out.residual = at.residual;
-  out.jacobian = jacobian;
-  const Matrix j = search.fitted(jacobian);
-  Matrix normal = j.transpose() * j;
-  normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff() + 1e-300;
-  out.covariance = normal.llt().solve(Matrix::Identity(normal.rows(), normal.cols()));
   return out;
+}
+
+Vector linear_step(const std::vector<Effect>& effects, const Eigen::Ref<const Matrix>& jacobian,
+                   const Eigen::Ref<const Vector>& residual) {
+  const std::vector<FreeParameter> free = free_parameters(effects);
+  Vector t(jacobian.cols());
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    t[static_cast<Eigen::Index>(i)] = natural_value(effects, free[i]);
+  }
+  const Matrix normal = jacobian.transpose() * jacobian;
+  return damped_step(free, t, normal, jacobian.transpose() * residual, 0.0) - t;
+}
+
+std::vector<Effect> moved(std::vector<Effect> effects, const Eigen::Ref<const Vector>& d) {
+  const std::vector<FreeParameter> free = free_parameters(effects);
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const double t = natural_value(effects, free[i]) + d[static_cast<Eigen::Index>(i)];
+    set_natural_value(effects, free[i], t);
+  }
+  return effects;
 }
 
 }  // namespace fatmc

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/discrepancy/effect_size.h"
+#include "core/discrepancy/signature_scan.h"
 
 namespace fatmc {
 namespace {
@@ -13,24 +14,21 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-/// Flights for the law of what a fitted effect leaves: 9 % of a deviation, 14 % of a variance of one feature.
-constexpr int kLawFlights = 100;
-
 /// Squared change of what is held back, in deviations, from which on it must be a change for the better: three deviations.
 constexpr double kVisible = 9.0;
 
-/// The effect of a signature, scaled by the amplitude that the scan gives it.
-Effect scaled(const Effect& signature, double amplitude) {
-  const EffectKind& kind = signature.kind();
-  Effect out = signature;
-  for (std::size_t p = 0; p < kind.parameters.size(); ++p) {
-    const EffectParameter& parameter = kind.parameters[p];
-    if (!parameter.strength || is_limit(parameter)) continue;
-    out.values[p] = std::clamp(parameter.toward(signature.values[p], std::clamp(amplitude, 0.05, 4.0)),
-                               parameter.low, parameter.high);
-  }
-  return out;
-}
+/// A candidate is tried while its gain along the dictionary is within these of the leader's: interpolation and few flights err by
+/// a hundredth of the discrepancy's energy at most.
+constexpr double kCloseGain = 4.0 * kClassGain, kCloseShare = 0.01;
+/// Where nothing close is adequate, up to this share of its gain.
+constexpr double kFarShare = 0.5;
+/// A rival of an effect in a set that is not adequate: the linear model behind its gain errs by more.
+constexpr double kSwapShare = 0.05;
+/// A step of the estimate that gains more than this is taken by flights again, a smaller one by the linear model.
+constexpr double kLinearGain = 25.0;
+/// What is above its limits by less than these factors may be so because the law is of few flights.
+constexpr double kNearEnergy = 1.3, kNearLocal = 5.0;
+constexpr int kConfirmingFlights = 64;
 
 }  // namespace
 
@@ -45,147 +43,239 @@ EffectSelection::EffectSelection(const Comparison& comparison, const Comparison*
   }
 }
 
-EffectFit EffectSelection::nothing() const {
-  EffectFit out;
-  out.ending = EffectFit::Ending::converged;
-  out.residual = comparison_.discrepancy();
-  out.cost = out.residual.squaredNorm();
-  out.jacobian.resize(comparison_.size(), 0);
+Explanation EffectSelection::nothing() const {
+  Explanation out{{}, FittedLaw(comparison_)};
+  out.fit.ending = EffectFit::Ending::converged;
+  out.fit.residual = comparison_.discrepancy();
+  out.fit.cost = out.fit.residual.squaredNorm();
+  out.fit.jacobian.resize(comparison_.size(), 0);
+  out.adequate = is_adequate(out);
   return out;
 }
 
-std::vector<ScanHit> EffectSelection::hits(const EffectFit& base) const {
-  const Dictionary& dictionary = comparison_.dictionary();
-  const std::vector<ScanHit> all = scan_signatures(base.residual, comparison_.atoms(), base.jacobian);
-  // The best signature of every candidate that is not in the set.
-  std::vector<ScanHit> best(dictionary.variants.size());
-  for (const ScanHit& hit : all) {
-    const auto v = static_cast<std::size_t>(dictionary.atoms[static_cast<std::size_t>(hit.atom)].variant);
-    const std::string variant = dictionary.variants[v].name();
+std::vector<Candidate> EffectSelection::candidates(const Explanation& base) const {
+  std::vector<Candidate> out =
+      scan_candidates(comparison_, base.fit.residual, base.fit.jacobian, base.law.deviation());
+  std::erase_if(out, [&](const Candidate& c) {
+    const std::string name = c.effect.name();
     const auto& excluded = options_.excluded;
-    if (std::find(excluded.begin(), excluded.end(), dictionary.variants[v].id) != excluded.end()) continue;
-    const bool used = std::any_of(base.effects.begin(), base.effects.end(),
-                                  [&](const Effect& e) { return e.name() == variant; });
-    if (!used && hit.glr > best[v].glr) best[v] = hit;
-  }
-  std::erase_if(best, [](const ScanHit& hit) { return hit.atom < 0; });
-  std::stable_sort(best.begin(), best.end(),
-                   [](const ScanHit& a, const ScanHit& b) { return a.glr > b.glr; });
-  return best;
-}
-
-std::vector<EffectFit> EffectSelection::extended(const EffectFit& base) const {
-  const FitOptions fit{options_.screening_flights, 5, 0.1, 1e-3};
-  std::vector<EffectFit> out;
-  const std::vector<ScanHit> leading = hits(base);
-  for (std::size_t i = 0; i < leading.size() && i < static_cast<std::size_t>(options_.rivals); ++i) {
-    // Signatures are taken at two sizes, so that a rival whose best one has a small part of the leader's likelihood gain does
-    // not overtake it by its curvature; the second is always tried, unless it is far off.
-    if (leading[i].glr < (i == 1 ? 0.3 : 0.6) * leading.front().glr) break;
-    std::vector<Effect> start = base.effects;
-    start.push_back(scaled(comparison_.dictionary().atoms[static_cast<std::size_t>(leading[i].atom)].effect,
-                           leading[i].amplitude));
-    EffectFit one = fit_effects(comparison_, std::move(start), {}, fit);
-    if (one.usable()) out.push_back(std::move(one));
-  }
-  std::stable_sort(out.begin(), out.end(),
-                   [](const EffectFit& a, const EffectFit& b) { return a.cost < b.cost; });
+    return std::find(excluded.begin(), excluded.end(), c.effect.id) != excluded.end() ||
+           std::any_of(base.fit.effects.begin(), base.fit.effects.end(),
+                       [&](const Effect& e) { return e.name() == name; });
+  });
   return out;
 }
 
-double EffectSelection::required_gain(const Effect& effect) const {
+double EffectSelection::largest_ratio(const Explanation& e) const {
+  const Matrix atoms = e.law.deviation().cwiseInverse().asDiagonal() * comparison_.atoms();
+  double most = 0.0;
+  for (const ScanHit& hit : scan_signatures(e.weighted_residual(), atoms, e.weighted_jacobian())) {
+    const Effect& effect = comparison_.dictionary().atoms[static_cast<std::size_t>(hit.atom)].effect;
+    const auto& excluded = options_.excluded;
+    if (std::find(excluded.begin(), excluded.end(), effect.id) == excluded.end())
+      most = std::max(most, hit.glr);
+  }
+  return most;
+}
+
+std::optional<Explanation> EffectSelection::judged(EffectFit fit, bool confirm) const {
+  const FitOptions options{options_.fit_flights};
+  for (int round = 0; fit.usable() && round < 2; ++round) {
+    auto law = FittedLaw::of(comparison_, fit.effects, FittedLaw::kFlights);
+    if (!law) return std::nullopt;
+    Explanation out{std::move(fit), std::move(*law)};
+    const double gain = take_linear_step(out);
+    if (gain > kLinearGain && round == 0) {
+      fit = fit_effects(comparison_, out.fit.effects, out.law.deviation(), options);
+      continue;
+    }
+    out.adequate = is_adequate(out);
+    if (confirm && !out.adequate && is_nearly_adequate(out)) {
+      // The law of few flights is itself uncertain: looked at again with more of them before the answer is "unknown".
+      if (auto more = FittedLaw::of(comparison_, out.fit.effects, kConfirmingFlights)) {
+        out.law = std::move(*more);
+        take_linear_step(out);
+        out.adequate = is_adequate(out);
+      }
+    }
+    return out;
+  }
+  return std::nullopt;
+}
+
+double EffectSelection::take_linear_step(Explanation& e) const {
+  e.fit.residual = comparison_.discrepancy() - e.law.change();
+  const Matrix j = e.weighted_jacobian();
+  const Vector step = linear_step(e.fit.effects, j, e.weighted_residual());
+  e.fit.effects = moved(std::move(e.fit.effects), step);
+  e.fit.residual -= e.fit.jacobian * step;
+  e.fit.cost = e.weighted_residual().squaredNorm();
+  return (j * step).squaredNorm();
+}
+
+std::optional<Explanation> EffectSelection::explained(const std::vector<Effect>& start,
+                                                      const FittedLaw& law) const {
+  return judged(fit_effects(comparison_, start, law.deviation(), {options_.fit_flights}), false);
+}
+
+std::vector<Explanation> EffectSelection::extended(const Explanation& base, bool far) const {
+  const std::vector<Candidate> leading = candidates(base);
+  std::vector<EffectFit> fits;
+  for (std::size_t i = 0; i < leading.size() && i < static_cast<std::size_t>(options_.rivals); ++i) {
+    const double first = leading.front().gain;
+    if (leading[i].gain < (far ? kFarShare * first : first - kCloseGain - kCloseShare * first)) break;
+    std::vector<Effect> start = base.fit.effects;
+    start.push_back(leading[i].effect);
+    EffectFit fit = fit_effects(comparison_, std::move(start), base.law.deviation(), {options_.fit_flights});
+    if (fit.usable()) fits.push_back(std::move(fit));
+  }
+  std::stable_sort(fits.begin(), fits.end(),
+                   [](const EffectFit& a, const EffectFit& b) { return a.cost < b.cost; });
+  std::vector<Explanation> out;
+  const double best = fits.empty() ? 0.0 : fits.front().cost;
+  for (EffectFit& fit : fits) {
+    if (fit.cost > best + kCloseGain) break;
+    if (auto one = judged(std::move(fit), out.empty())) out.push_back(std::move(*one));
+  }
+  if (out.empty()) return out;
+  // Each in the coordinates of the first one's law: they differ little where costs are close.
+  const FittedLaw law = out.front().law;
+  std::stable_sort(out.begin(), out.end(),
+                   [&](const Explanation& a, const Explanation& b) { return cost(a, law) < cost(b, law); });
+  return out;
+}
+
+double EffectSelection::required_gain(const Effect& effect, const FittedLaw& law, bool first) const {
   const auto p = static_cast<double>(effect.values.size());
   const auto v = static_cast<double>(comparison_.dictionary().variants.size());
-  return std::max(comparison_.thresholds().scan, 2.0 * p * std::log(v / kNamingLevel)) +
+  const double named = 2.0 * p * std::log(v / kNamingLevel);
+  return (first ? named : std::max(comparison_.thresholds().scan * law.scan_ratio(), named)) +
          kMaterialShare * excess_;
 }
 
-bool EffectSelection::accepted(const EffectFit& without, const EffectFit& with, const Effect& added) const {
-  if (without.cost - with.cost < required_gain(added)) return false;
+bool EffectSelection::accepted(const Explanation& without, const Explanation& with) const {
+  const Effect& added = with.fit.effects.back();
+  const double gain = cost(without, with.law) - with.fit.cost;
+  if (gain < required_gain(added, without.law, without.fit.effects.empty())) return false;
   if (relative_size(added) < kMaterialSize) return false;
+  // With another effect still missing, a fit of one may well raise the error where the other acts.
+  if (!with.adequate) return true;
   if (holdout_ == nullptr) {
     // Lines show nothing of an effect on noise or trim alone.
     double shown = 0.0;
-    for (const int row : held_) shown += std::pow(with.residual[row] - without.residual[row], 2);
+    for (const int row : held_) {
+      shown += std::pow((with.fit.residual[row] - without.fit.residual[row]) / with.law.deviation()[row], 2);
+    }
     if (shown < kVisible) return true;
+    Explanation before = without;
+    before.law = with.law;
+    return held_out_cost(with) < held_out_cost(before);
   }
   return held_out_cost(with) < held_out_cost(without);
 }
 
-EffectFit EffectSelection::refitted(const std::vector<Effect>& effects, int flights) const {
-  if (effects.empty()) return nothing();
-  return fit_effects(comparison_, effects, {}, {flights, 5, 0.05, 1e-4});
-}
-
 // From the fit to all rows the optimum on the training rows is one linear step away: dt = (J^T J)^-1 J^T r over those rows.
-Vector EffectSelection::trained_residual(const EffectFit& fit) const {
-  if (fit.jacobian.cols() == 0 || holdout_ != nullptr) return fit.residual;
-  Matrix j(static_cast<Eigen::Index>(training_.size()), fit.jacobian.cols());
-  Vector r(j.rows());
-  for (std::size_t i = 0; i < training_.size(); ++i) {
-    j.row(static_cast<Eigen::Index>(i)) = fit.jacobian.row(training_[i]);
-    r[static_cast<Eigen::Index>(i)] = fit.residual[training_[i]];
-  }
-  const Matrix normal = j.transpose() * j;
-  const Vector step = normal.completeOrthogonalDecomposition().solve(j.transpose() * r);
-  return fit.residual - fit.jacobian * step;
+Vector EffectSelection::trained_residual(const Explanation& e) const {
+  const Vector r = e.weighted_residual();
+  if (e.fit.jacobian.cols() == 0 || holdout_ != nullptr) return r;
+  const Matrix j = e.weighted_jacobian();
+  const Matrix part = j(training_, Eigen::all);
+  const Matrix normal = part.transpose() * part;
+  const Vector step = normal.completeOrthogonalDecomposition().solve(part.transpose() * r(training_));
+  return r - j * step;
 }
 
-double EffectSelection::held_out_cost(const EffectFit& fit) const {
-  if (holdout_ == nullptr) {
-    const Vector residual = trained_residual(fit);
-    double sum = 0.0;
-    for (const int row : held_) sum += residual[row] * residual[row];
-    return sum;
-  }
-  if (fit.effects.empty()) return holdout_->discrepancy().squaredNorm();
-  const std::vector<std::vector<Effect>> sets = {fit.effects};
-  const double cost =
-      (holdout_->discrepancy() - holdout_->changes(sets, options_.final_flights).col(0)).squaredNorm();
-  return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
+double EffectSelection::held_out_cost(const Explanation& e) const {
+  if (holdout_ == nullptr) return trained_residual(e)(held_).squaredNorm();
+  if (e.fit.effects.empty()) return holdout_->discrepancy().squaredNorm();
+  const std::vector<std::vector<Effect>> sets = {e.fit.effects};
+  const double left =
+      (holdout_->discrepancy() - holdout_->changes(sets, ComparisonBasis::kBaseline).col(0)).squaredNorm();
+  return std::isfinite(left) ? left : std::numeric_limits<double>::infinity();
 }
 
-bool EffectSelection::adequate(const EffectFit& fit) const {
+bool EffectSelection::is_adequate(const Explanation& e) const {
   const Thresholds& limit = comparison_.thresholds();
-  const double energy = fit.residual.squaredNorm();
-  const double local = comparison_.local_score(fit.residual);
-  const double allowed_local = limit.local + kResolution * std::max(0.0, local_);
-  if (energy <= limit.energy + kResolution * excess_ && local <= allowed_local) return true;
-  if (fit.effects.empty()) return false;
-  // An effect changes the noise as well: what chance gives is then read from flights of the model with it.
-  const auto law = comparison_.residual_law(fit.effects, kLawFlights);
-  if (!law) return false;
-  return energy <= limit.energy * law->energy_mean / limit.energy_mean + kResolution * excess_ &&
-         comparison_.local_score(fit.residual, *law) <= allowed_local;
+  const Vector r = e.weighted_residual();
+  return r.squaredNorm() <= limit.energy + e.law.excess() + kResolution * excess_ &&
+         comparison_.local_score(r, e.law.group_excess()) <=
+             limit.local + kResolution * std::max(0.0, local_);
 }
 
-EffectFit EffectSelection::without(const EffectFit& fit, std::size_t effect) const {
-  std::vector<Effect> left = fit.effects;
+bool EffectSelection::is_nearly_adequate(const Explanation& e) const {
+  const Thresholds& limit = comparison_.thresholds();
+  const Vector r = e.weighted_residual();
+  return r.squaredNorm() <= kNearEnergy * (limit.energy + e.law.excess()) + kResolution * excess_ &&
+         comparison_.local_score(r, e.law.group_excess()) <=
+             kNearLocal * limit.local + kResolution * std::max(0.0, local_);
+}
+
+std::optional<Explanation> EffectSelection::without(const Explanation& e, std::size_t effect) const {
+  std::vector<Effect> left = e.fit.effects;
   left.erase(left.begin() + static_cast<std::ptrdiff_t>(effect));
-  return refitted(left, options_.screening_flights);
+  if (left.empty()) return nothing();
+  return explained(left, e.law);
 }
 
-EffectFit EffectSelection::pruned(EffectFit fit) const {
-  for (std::size_t e = 0; fit.effects.size() > 1 && e < fit.effects.size();) {
-    EffectFit less = without(fit, e);
-    if (less.usable() && less.cost - fit.cost < required_gain(fit.effects[e])) {
-      fit = std::move(less);
+EffectSelection::Alternative EffectSelection::alternative(const Explanation& e, std::size_t effect) const {
+  Explanation rest{{}, e.law};
+  rest.fit.effects = e.fit.effects;
+  rest.fit.effects.erase(rest.fit.effects.begin() + static_cast<std::ptrdiff_t>(effect));
+  rest.fit.residual = e.fit.residual;
+  const std::vector<FreeParameter> free = free_parameters(e.fit.effects);
+  std::vector<int> others;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const EffectParameter& p =
+        e.fit.effects[effect].kind().parameters[static_cast<std::size_t>(free[i].parameter)];
+    if (free[i].effect != static_cast<int>(effect)) {
+      others.push_back(static_cast<int>(i));
+    } else if (p.strength && !is_limit(p)) {
+      const double distance = natural_value(e.fit.effects, free[i]) - to_natural(p, p.nominal);
+      rest.fit.residual += distance * e.fit.jacobian.col(at);
+    }
+  }
+  rest.fit.jacobian = e.fit.jacobian(Eigen::all, others);
+  Alternative out;
+  const std::string name = e.fit.effects[effect].name();
+  for (const Candidate& c : candidates(rest)) {
+    double& gain = c.effect.name() == name ? out.own : out.rival;
+    gain = std::max(gain, c.gain);
+  }
+  return out;
+}
+
+Explanation EffectSelection::pruned(Explanation full) const {
+  for (std::size_t e = 0; full.fit.effects.size() > 1 && e < full.fit.effects.size();) {
+    // Far above what is required it needs no flights to know that the effect stays.
+    if (alternative(full, e).own > 3.0 * required_gain(full.fit.effects[e], full.law, false)) {
+      ++e;
+      continue;
+    }
+    auto less = without(full, e);
+    if (less &&
+        cost(*less, full.law) - full.fit.cost < required_gain(full.fit.effects[e], less->law, false)) {
+      full = std::move(*less);
       e = 0;
     } else {
       ++e;
     }
   }
-  return fit;
+  return full;
 }
 
-EffectFit EffectSelection::exchanged(EffectFit fit) const {
-  for (std::size_t e = 0; fit.effects.size() > 1 && e < fit.effects.size(); ++e) {
-    const EffectFit less = without(fit, e);
-    if (!less.usable()) continue;
-    std::vector<EffectFit> rivals = extended(less);
-    if (!rivals.empty() && rivals.front().cost < fit.cost - 1.0) fit = std::move(rivals.front());
+Explanation EffectSelection::exchanged(Explanation full) const {
+  for (std::size_t e = 0; full.fit.effects.size() > 1 && e < full.fit.effects.size(); ++e) {
+    const Alternative other = alternative(full, e);
+    if (other.rival < other.own - kCloseGain - (full.adequate ? kCloseShare : kSwapShare) * other.own)
+      continue;
+    const auto less = without(full, e);
+    if (!less) continue;
+    std::vector<Explanation> rivals = extended(*less, false);
+    if (!rivals.empty() && cost(rivals.front(), full.law) < full.fit.cost - 1.0)
+      full = std::move(rivals.front());
   }
-  return fit;
+  return full;
 }
 
 }  // namespace fatmc

@@ -3,39 +3,73 @@
 
 #include <vector>
 
+#include "core/discrepancy/candidate_scan.h"
 #include "core/discrepancy/diagnosis.h"
 #include "core/discrepancy/effect_fit.h"
-#include "core/discrepancy/signature_scan.h"
+#include "core/discrepancy/fitted_law.h"
 
 namespace fatmc {
+
+/// A set of effects at its best values, and what chance gives with it.
+struct Explanation {
+  EffectFit fit;
+  FittedLaw law;
+  bool adequate = false;  ///< what is left is what chance gives
+
+  /// Residual and Jacobian over the noise that the effects make.
+  [[nodiscard]] Eigen::VectorXd weighted_residual() const {
+    return fit.residual.cwiseQuotient(law.deviation());
+  }
+  [[nodiscard]] Eigen::MatrixXd weighted_jacobian() const {
+    return law.deviation().cwiseInverse().asDiagonal() * fit.jacobian;
+  }
+};
 
 class EffectSelection {
  public:
   EffectSelection(const Comparison& comparison, const Comparison* holdout, const DiagnosisOptions& options);
 
   /// The model as it is.
-  [[nodiscard]] EffectFit nothing() const;
-  /// `base` with one more effect, the leading signatures on its residual fitted together with it, best fit first.
-  [[nodiscard]] std::vector<EffectFit> extended(const EffectFit& base) const;
-  /// What the last effect of `fit` must gain over a fit without it.
-  [[nodiscard]] double required_gain(const Effect& effect) const;
+  [[nodiscard]] Explanation nothing() const;
+  /// `base` with one more effect: the leading candidates fitted together with it, the best explanation first; only those whose
+  /// likelihood along the dictionary is close to the best one's, or with `far` half of it.
+  [[nodiscard]] std::vector<Explanation> extended(const Explanation& base, bool far) const;
+  [[nodiscard]] double scan_threshold() const { return comparison_.thresholds().scan; }
+  /// What a further effect must gain; the first has passed the threshold of the scan when something was detected.
+  [[nodiscard]] double required_gain(const Effect& effect, const FittedLaw& law, bool first) const;
   /// Whether the added effect earns its place: gain, held-out error, size.
-  [[nodiscard]] bool accepted(const EffectFit& without, const EffectFit& with, const Effect& added) const;
+  [[nodiscard]] bool accepted(const Explanation& without, const Explanation& with) const;
   /// Drops effects that no longer earn their place, and exchanges those with better rivals.
-  [[nodiscard]] EffectFit pruned(EffectFit fit) const;
-  [[nodiscard]] EffectFit exchanged(EffectFit fit) const;
-  [[nodiscard]] EffectFit refitted(const std::vector<Effect>& effects, int flights) const;
-  /// Residual, all rows, of the same effects fitted to the training rows alone; whole records held back: as it is.
-  [[nodiscard]] Eigen::VectorXd trained_residual(const EffectFit& fit) const;
-  /// |z - m|^2 on what is held back, of effects fitted to the rest.
-  [[nodiscard]] double held_out_cost(const EffectFit& fit) const;
-  /// What is left is what chance gives.
-  [[nodiscard]] bool adequate(const EffectFit& fit) const;
-  /// Largest GLR of the candidates on a residual, with the hit's atom.
-  [[nodiscard]] std::vector<ScanHit> hits(const EffectFit& base) const;
+  [[nodiscard]] Explanation pruned(Explanation full) const;
+  [[nodiscard]] Explanation exchanged(Explanation full) const;
+  /// These effects at their best values; none where they cannot be flown.
+  [[nodiscard]] std::optional<Explanation> explained(const std::vector<Effect>& start,
+                                                     const FittedLaw& law) const;
+  /// W^-1 (z - m) of the same effects fitted to the training rows alone; whole records held back: as it is.
+  [[nodiscard]] Eigen::VectorXd trained_residual(const Explanation& e) const;
+  /// Largest GLR of a further signature, in the coordinates of the explanation's law.
+  [[nodiscard]] double largest_ratio(const Explanation& e) const;
+  /// Gains, by the linear model and the dictionary, of an effect of the set and of the best one that could stand in its place.
+  struct Alternative {
+    double own = 0.0, rival = 0.0;
+  };
+  [[nodiscard]] Alternative alternative(const Explanation& e, std::size_t effect) const;
+  /// |r|^2 of one explanation in the coordinates of another's law.
+  [[nodiscard]] static double cost(const Explanation& e, const FittedLaw& law) {
+    return e.fit.residual.cwiseQuotient(law.deviation()).squaredNorm();
+  }
 
  private:
-  [[nodiscard]] EffectFit without(const EffectFit& fit, std::size_t effect) const;
+  [[nodiscard]] std::vector<Candidate> candidates(const Explanation& base) const;
+  /// A fit with the law that its effects make, refined by it; none where they cannot be flown. `confirm`: an answer that
+  /// is not adequate by little is looked at again with more flights.
+  [[nodiscard]] std::optional<Explanation> judged(EffectFit fit, bool confirm) const;
+  /// Moves to the optimum by the law's mean change and the linear model; returns what that gains.
+  double take_linear_step(Explanation& e) const;
+  [[nodiscard]] std::optional<Explanation> without(const Explanation& e, std::size_t effect) const;
+  [[nodiscard]] double held_out_cost(const Explanation& e) const;
+  [[nodiscard]] bool is_adequate(const Explanation& e) const;
+  [[nodiscard]] bool is_nearly_adequate(const Explanation& e) const;
 
   const Comparison& comparison_;
   const Comparison* holdout_;

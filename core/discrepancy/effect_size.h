@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/flight/effects/effect.h"
+#include "core/flight/effects/effect_limit.h"
 
 namespace fatmc {
 
@@ -24,8 +25,6 @@ inline double place_of_least(const EffectParameter& p) {
 inline double least_moderate(const EffectParameter& p) {
   return std::abs(to_natural(p, p.moderate(place_of_least(p), false)) - to_natural(p, p.nominal));
 }
-/// A limit that nothing meets when it is far away: its effect does not scale with the distance from nominal.
-inline bool is_limit(const EffectParameter& p) { return p.strength && p.logarithmic && p.nominal == p.high; }
 
 /// Largest distance of a strength from nominal, in smallest moderate sizes.
 inline double relative_size(const Effect& effect) {

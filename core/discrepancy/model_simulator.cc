@@ -109,8 +109,11 @@ std::vector<EffectFlights> ModelSimulator::fly(std::span<const std::vector<Effec
     counter.one();
   });
   for (std::size_t job = 0; job < failures.size(); ++job) {
-    std::string& failure = out[job / static_cast<std::size_t>(count)].failure;
-    if (failure.empty()) failure = failures[job];
+    const std::size_t s = job / static_cast<std::size_t>(count);
+    if (out[s].failure.empty()) out[s].failure = failures[job];
+    if (flights[s] && failures[job].empty()) {
+      out[s].completed.push_back(static_cast<int>(job % static_cast<std::size_t>(count)));
+    }
   }
   return out;
 }

@@ -19,8 +19,9 @@ using FlightProgress = std::function<void(int done, int total)>;
 
 /// Flights of one set of effects.
 struct EffectFlights {
-  Eigen::MatrixXd features;  ///< layout size x flights
-  std::string failure;       ///< empty, or why at least one flight has no result (diverged, no trim)
+  Eigen::MatrixXd features;    ///< layout size x flights; zeros where a flight has no result
+  std::vector<int> completed;  ///< flights with a result, counted from the first one flown
+  std::string failure;         ///< empty, or why at least one flight has no result (diverged, no trim)
   [[nodiscard]] bool usable() const { return failure.empty(); }
 };
 

@@ -2,7 +2,9 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <span>
 
 #include "core/base/check.h"
@@ -21,11 +23,22 @@ std::span<const double> channel(const LoopRecord& record, int c, bool attitude) 
   return column(record.airspeed, 0);
 }
 
-/// log(samples / distinct values): 0 where no value repeats.
+/// log(samples / distinct values): 0 where no value repeats. Distinct bit patterns are counted in a table with open
+/// addressing, a fifth full at most: sorting would take longer than the flight. Zeros of either sign are one value.
 double repetition(std::span<const double> x) {
-  std::vector<double> sorted(x.begin(), x.end());
-  std::sort(sorted.begin(), sorted.end());
-  const auto distinct = std::unique(sorted.begin(), sorted.end()) - sorted.begin();
+  constexpr std::uint64_t kEmpty = ~std::uint64_t{0};  // a NaN, which no record holds
+  const auto bits = static_cast<unsigned>(std::bit_width(x.size())) + 2;
+  std::vector<std::uint64_t> table(std::size_t{1} << bits, kEmpty);
+  const std::uint64_t mask = table.size() - 1;
+  std::size_t distinct = 0;
+  for (const double value : x) {
+    const auto pattern = std::bit_cast<std::uint64_t>(value + 0.0);
+    std::uint64_t at = (pattern * 0x9e3779b97f4a7c15ULL) >> (64 - bits);
+    while (table[at] != kEmpty && table[at] != pattern) at = (at + 1) & mask;
+    if (table[at] == pattern) continue;
+    table[at] = pattern;
+    ++distinct;
+  }
   return std::log(static_cast<double>(x.size()) / static_cast<double>(distinct));
 }
 
@@ -72,8 +85,9 @@ Eigen::VectorXd FeatureExtractor::extract(const LoopRecord& record) const {
       for (int c = 0; c < 3; ++c) out[block.first + c] = repetition(channel(record, c, layout_.attitude));
     }
     if (block.kind == FeatureKind::dc && layout_.attitude) {
-      const auto phi = record.attitude.col(0).array();
-      out[block.first + block.size() - 1] = (phi.sin() * phi.tan()).mean();
+      // sin tan = 1/cos - cos
+      const Eigen::ArrayXd cosine = record.attitude.col(0).array().cos();
+      out[block.first + block.size() - 1] = (cosine.inverse() - cosine).mean();
     }
     if (block.kind == FeatureKind::controller) controller(record, out.data() + block.first);
   }

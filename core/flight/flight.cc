@@ -1,10 +1,12 @@
 #include "core/flight/flight.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "core/base/text.h"
 #include "core/flight/flight_loop.h"
+#include "core/flight/step_parts.h"
 
 namespace fatmc {
 namespace {
@@ -16,6 +18,18 @@ int parts(double tick_s, double part_s) {
   const bool divides =
       std::isfinite(ratio) && whole >= 1.0 && whole <= 1000.0 && std::abs(ratio - whole) < 1e-9 * whole;
   return divides ? static_cast<int>(whole) : 0;
+}
+
+constexpr int kMostParts =
+    100;  // of a Runge-Kutta step: a tick that takes a hundred times as long is a mistake
+
+/// Into how many parts the setup's step is split, so that every stage of the flight is flown stably.
+int parts_of_steps(const Aircraft& aircraft, const FlightSetup& setup, const Trim& trim) {
+  int most = parts_of_step(aircraft, linearize(aircraft, trim), setup.step_s);
+  for (const FlightStage& stage : setup.stages) {
+    most = std::max(most, parts_of_step(stage.aircraft, linearize(stage.aircraft, trim), setup.step_s));
+  }
+  return most;
 }
 
 }  // namespace
@@ -45,18 +59,20 @@ Flight::Flight(const Aircraft& aircraft, const FlightSetup& setup, Trim trim)
       setup_(setup),
       trim_(std::move(trim)),
       tick_s_(1.0 / setup.rate_hz),
-      steps_per_tick_(parts(tick_s_, setup.step_s)),
+      steps_per_tick_(parts(tick_s_, setup.step_s) * parts_of_steps(aircraft, setup, trim_)),
       imu_samples_(parts(tick_s_, setup.imu_step_s)),
       direct_path_(setup.path == SignalPath{} && setup.stages.empty()),
       rigid_(aircraft.additional == AdditionalPhysics{}),
       continuous_(linearize(aircraft, trim_)),
       sampled_(sample(aircraft, trim_, tick_s_, steps_per_tick_)),
       dryden_(setup.turbulence_m_s, aircraft.speed_m_s, aircraft.span_m, tick_s_) {
+  const double step_s =
+      steps_per_tick_ == parts(tick_s_, setup.step_s) ? setup.step_s : tick_s_ / steps_per_tick_;
   const auto add = [&](const FlightStage& stage) {
     const FlightConstants constants(stage.aircraft);
     stages_.push_back({stage.from_s, constants, AdditionalDynamics(stage.aircraft, constants, true),
                        Gyro(stage.imu, imu_samples_ / tick_s_), stage.gain, stage.path,
-                       PreparedStage::Delay(stage.path.command_delay_s, tick_s_, setup.step_s)});
+                       PreparedStage::Delay(stage.path.command_delay_s, tick_s_, step_s)});
   };
   add({0.0, aircraft, setup.imu, setup.gain, setup.path});
   for (const FlightStage& stage : setup.stages) {
@@ -135,6 +151,11 @@ Result<Flight> Flight::prepare(const Aircraft& aircraft, const FlightSetup& setu
                           ? std::string("it needs more than throttle, elevator or angle of attack allow")
                           : "the trim solver stopped after " + std::to_string(trim.iterations) +
                                 " iterations with a residual of " + significant(trim.residual, 3)));
+  }
+  if (const int split = parts_of_steps(aircraft, setup, trim); split > kMostParts) {
+    return wrong("step_s", "the aircraft's fastest mode needs steps of " +
+                               significant(setup.step_s / split, 2) +
+                               " s, write a slower one or a shorter step");
   }
   return Flight(aircraft, setup, trim);
 }

@@ -23,7 +23,7 @@
 #include "coordinator/server/local_workers.h"
 #include "coordinator/store/campaign_store.h"
 #include "core/base/check.h"
-#include "proto/build_hash.h"
+#include "core/base/build_hash.h"
 
 namespace fatmc {
 namespace {

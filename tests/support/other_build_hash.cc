@@ -1,5 +1,5 @@
 // Takes the place of the build's own hash in a program that links this file.
-#include "proto/build_hash.h"
+#include "core/base/build_hash.h"
 
 namespace fatmc {
 

@@ -13,19 +13,7 @@ import tempfile
 fatmc = sys.argv[1]
 aircraft = "campaigns/models/fat.toml"
 folder = tempfile.TemporaryDirectory()
-EXPERIMENT = """kind = "experiment"
-[excitation]
-period_s = 40.0
-periods = 2
-ranges_hz = [[0.3, 2.25, 0.05]]
-amplitude_rad_s = [0.05, 0.03, 0.05]
-[controller]
-gain = [0.1, 0.1, 0.1]
-[environment]
-turbulence_sigma_m_s = 0.5
-[imu]
-grade = "tactical"
-"""
+experiment = "tests/support/short_experiment.toml"
 
 
 def place(name):
@@ -40,9 +28,6 @@ def write(name, text):
 
 def run(*arguments):
     return subprocess.run([fatmc, *arguments], capture_output=True, text=True)
-
-
-experiment = write("experiment.toml", EXPERIMENT)
 
 
 def flight(name, seed, *effects):

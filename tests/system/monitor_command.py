@@ -43,6 +43,13 @@ with tempfile.TemporaryDirectory() as folder:
     assert whole[-1]["nominal_stable"] == summary["nominal_stable"]
     assert set(whole[-1]) >= {"t", "p_total_ssv", "p_total_hinf", "nominal_stable", "window_full"}
 
+    # An effect of the nominal model's file that its linear plant lacks is named once, away from the epochs.
+    delayed = f"{folder}/delayed.toml"
+    with open(delayed, "w") as file:
+        file.write(open(MODEL).read() + '[[effect]]\nid = "transport_delay"\ndelay_s = 0.03\n')
+    done = run("monitor", flight, "--nominal", delayed, "--every", 100)
+    assert len(epochs(done)) == 4 and done.stderr.count("transport_delay:delay_s=0.03") == 1, done.stderr
+
     # The same samples on standard input give the same lines.
     options = ["--nominal", MODEL, "--every", 100, "--combine", "min", "--bias", "off"]
     streamed = run("monitor", "-", "--meta", meta, *options, text=rows)

@@ -101,6 +101,15 @@ refused([record, "--nominal", path("nan.csv", "\n".join([response[0], response[1
 refused([record, "--nominal", aircraft, "--intergrid", "-1"], "--intergrid")
 refused([record, "--nominal", aircraft, "--combine", "max"], "--combine")
 refused([record, "--nominal", aircraft, "--n-e", "3"])
+# Effects of a model file that the linearised airframe does not show are named, in text and JSON; without any there is no word.
+with open(aircraft) as file:
+    plain_model = file.read()
+delayed = path("delayed.toml", plain_model + '[[effect]]\nid = "transport_delay"\ndelay_s = 0.03\n[[effect]]\nid = "mass"\nfactor = 1.1\n')
+for model, words in ((delayed, ["transport_delay:delay_s=0.03"]), (aircraft, [])):
+    _, summary, text = judged(nominal=model)
+    assert summary["nominal"].get("effects_not_shown", []) == words, summary["nominal"]
+    said = [line for line in text.splitlines() if "not in the nominal plant" in line]
+    assert len(said) == len(words) and all(word in said[0] and "mass" not in said[0] for word in words), text
 refused([record], "--nominal")
 with open(meta, encoding="utf-8") as file:
     roles = file.read()

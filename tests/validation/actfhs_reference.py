@@ -95,6 +95,7 @@ for angular in (False, True):
     power = np.repeat([sigma**2, sigma_rate**2], 3)[: len(stay)] * (1 - stay**2)
     a_g = np.block([[a_d, np.hstack(columns)], [np.zeros((len(stay), n)), np.diag(stay)]])
     c_g = np.hstack([c_d, np.zeros((8, len(stay)))])
+    c_g[:3, n : n + 3] = -np.eye(3)  # u, v, w are airspeeds
     q = np.diag(np.concatenate([np.zeros(n), power]))
     for share in (1.0, 0.1):
         r = np.diag((share * np.array(flight["noise"])) ** 2)

@@ -3,11 +3,16 @@
 
     coverage_reference.py FATMC             flies 12 trials and compares all shares with `fatmc tables --format json`
     coverage_reference.py FATMC --bias DB   experiment: coverage by rule (5.14) for other readings of the bias b
+    coverage_reference.py FATMC --insensitivity
+                                            experiment: Fig. 5-2, Dutch roll and zeros with other derivatives
+    coverage_reference.py FATMC --extremes DB
+                                            experiment: how often intervals for the smallest SNR of 50 runs hold, by law
 
-The second is the reason behind the verdicts of Table 5-5 (campaigns/coverage/README.md).
+The experiments are the reasons behind the verdicts of Table 5-5, Fig. 5-2 and 5.2.3 (campaigns/coverage/README.md).
 """
 import json
 import pathlib
+import re
 import sqlite3
 import subprocess
 import sys
@@ -16,19 +21,10 @@ import tempfile
 import numpy as np
 from scipy import stats
 
+from campaign_arrays import arrays
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LEVELS = (0.75, 0.90, 0.95, 0.99)
-
-
-def arrays(path, cell="nonlinear"):
-    """name -> runs x values of the trials that are ok."""
-    db = sqlite3.connect(path)
-    out = {}
-    rows = db.execute("SELECT a.name, a.data FROM arrays a JOIN trials t ON t.cell = a.cell AND t.repetition = a.repetition "
-                      "WHERE a.cell = ? AND t.outcome = 'ok' ORDER BY a.repetition", (cell,))
-    for name, data in rows:
-        out.setdefault(name, []).append(np.frombuffer(data, "<f8"))
-    return {name: np.array(values) for name, values in out.items()}
 
 
 def shares(squares, limits):
@@ -42,7 +38,7 @@ def compare(fatmc):
                        cwd=ROOT, capture_output=True)
         table = json.loads(subprocess.run([fatmc, "tables", path, "--only", "5-5", "--format", "json"], check=True,
                                           cwd=ROOT, capture_output=True, text=True).stdout)
-        a = arrays(path)
+        a = arrays(path, "nonlinear")
     error = a["error_re"] + 1j * a["error_im"]
     n = len(error)
     sample = (error - error.mean(axis=0)) * np.sqrt(n / (n - 1))
@@ -76,7 +72,7 @@ def compare(fatmc):
 
 
 def bias_experiment(fatmc, path):
-    a = arrays(path)
+    a = arrays(path, "nonlinear")
     model = json.loads(subprocess.run([fatmc, "linearize", "campaigns/models/fat.toml", "--format", "json"], check=True,
                                       cwd=ROOT, capture_output=True, text=True).stdout)["sampled"]
     A, B, C, D = (np.array(model[k]) for k in "ABCD")
@@ -121,9 +117,86 @@ def bias_experiment(fatmc, path):
     return 0
 
 
+def changed_model(factors):
+    """campaigns/models/fat.toml with values of (table, key) multiplied."""
+    out, table = [], ""
+    for line in (ROOT / "campaigns/models/fat.toml").read_text(encoding="utf-8").splitlines():
+        if match := re.match(r"\[(.*)\]", line):
+            table = match.group(1)
+        match = re.match(r"(\w+) = (-?[\d.e-]+)(.*)", line)
+        if match and (table, match.group(1)) in factors:
+            line = f"{match.group(1)} = {float(match.group(2)) * factors[table, match.group(1)]:.9g}{match.group(3)}"
+        out.append(line)
+    return "\n".join(out) + "\n"
+
+
+def insensitivity_experiment(fatmc):
+    """Largest 1/|H| from 0.05 to 5 Hz; Dutch roll and the slow pair of zeros of r/zeta_c beside it."""
+    spec = (ROOT / "campaigns/experiments/chapter5.toml").read_text(encoding="utf-8")
+    with tempfile.TemporaryDirectory() as folder:
+        experiment, model = pathlib.Path(folder) / "wide.toml", pathlib.Path(folder) / "model.toml"
+        experiment.write_text(re.sub(r"ranges_hz = \[.*?\n\]", "ranges_hz = [[0.05, 5.0, 0.01]]", spec, flags=re.S),
+                              encoding="utf-8")
+
+        def read(*words):
+            return json.loads(subprocess.run([fatmc, *words, "--format", "json"], check=True, capture_output=True,
+                                             text=True).stdout)
+
+        for name, factors in (("as flown", {}), ("0.5 C_n_r", {("yaw", "r"): 0.5}), ("0.73 C_n_r", {("yaw", "r"): 0.73}),
+                              ("0.73 C_n_r, 1.7 C_Y_beta", {("yaw", "r"): 0.73, ("side", "beta"): 1.7}),
+                              ("0.73 C_m_q", {("pitch", "q"): 0.73}), ("0.5 C_m_q", {("pitch", "q"): 0.5}),
+                              ("twice C_Y_r", {("side", "r"): 2.0}), ("twice C_l_r", {("roll", "r"): 2.0}),
+                              ("twice C_n_p", {("yaw", "p"): 2.0})):
+            model.write_text(changed_model(factors), encoding="utf-8")
+            axes = read("design", "--experiment", experiment, "--model", model)["experiment"]["axes"]
+            linear = read("linearize", model)
+            pair = lambda roots, low, high: [complex(*z) for z in roots if z[1] > 0 and low < abs(complex(*z)) < high]
+            dutch, zero = pair(linear["poles"], 1.9, 2.5)[0], pair(linear["zeros"]["r/zeta_c"], 0.0, 1.0)[0]
+            print(f"{name:26s} " + "  ".join(f"{a['axis']} {min(a['turbulence_insensitivity_db']):5.1f} to "
+                                              f"{max(a['turbulence_insensitivity_db']):4.1f} dB" for a in axes) +
+                  f"  Dutch roll {abs(dutch) / 2 / np.pi:.3f} Hz, damping {-dutch.real / abs(dutch):.3f}"
+                  f"  zero {abs(zero) / 2 / np.pi:.3f} Hz, damping {-zero.real / abs(zero):.3f}")
+    return 0
+
+
+def extremes_experiment(path, size=50, pairs=4000, resamples=400):
+    """Pairs of campaigns drawn from the runs of a large one: how often the second's smallest SNR lies outside."""
+    rng = np.random.default_rng(1)
+    k = stats.norm.ppf(1 - (1 - np.array([0.025, 0.975])) ** (1 / size))
+    wide = np.array([-3.51968, -1.37157])  # normal_smallest_factor(50, 50, ...)
+    print("share below / above a 95 % interval, %: normal law | its parameters taken as known | ranks (above) | bootstrap")
+    with sqlite3.connect(f"file:{path}?mode=ro", uri=True) as db:
+        for axis in ("xi_c", "eta_c", "zeta_c"):
+            runs = np.array(db.execute("SELECT value FROM metrics WHERE name = ?", (f"smallest_input_snr_db_{axis}",)).fetchall())
+            runs = runs[:, 0]
+            out, drawn = np.zeros((4, 2)), 0
+            for pair in range(pairs):
+                order = rng.permutation(len(runs))
+                ours, theirs = runs[order[:size]], runs[order[size:2 * size]].min()
+                mean, deviation = ours.mean(), ours.std(ddof=1)
+                for row, factors in ((0, wide), (1, k)):
+                    out[row] += theirs < mean + factors[0] * deviation, theirs > mean + factors[1] * deviation
+                out[2, 1] += theirs > np.sort(ours)[5]
+                if pair < resamples:
+                    draws = ours.min() + np.array([rng.choice(ours, size).min() - rng.choice(ours, size).min()
+                                                   for _ in range(resamples)])
+                    low, high = np.quantile(draws, (0.025, 0.975))
+                    out[3] += theirs < low, theirs > high
+                    drawn += 1
+            out[:3] /= pairs
+            out[3] /= drawn
+            print(f"{axis:7s} {len(runs)} runs, deviation {runs.std():.2f} dB, skewness {stats.skew(runs):.2f}: " +
+                  " | ".join(f"{100 * a:4.1f} / {100 * b:4.1f}" for a, b in out))
+    return 0
+
+
 if __name__ == "__main__":
     if len(sys.argv) == 2:
         sys.exit(compare(sys.argv[1]))
     if len(sys.argv) == 4 and sys.argv[2] == "--bias":
         sys.exit(bias_experiment(sys.argv[1], sys.argv[3]))
+    if len(sys.argv) == 4 and sys.argv[2] == "--extremes":
+        sys.exit(extremes_experiment(sys.argv[3]))
+    if len(sys.argv) == 3 and sys.argv[2] == "--insensitivity":
+        sys.exit(insensitivity_experiment(sys.argv[1]))
     sys.exit(__doc__)

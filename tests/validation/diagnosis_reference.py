@@ -17,19 +17,7 @@ import numpy as np
 
 fatmc = sys.argv[1]
 folder = tempfile.TemporaryDirectory()
-EXPERIMENT = """kind = "experiment"
-[excitation]
-period_s = 40.0
-periods = 2
-ranges_hz = [[0.3, 2.25, 0.05]]
-amplitude_rad_s = [0.05, 0.03, 0.05]
-[controller]
-gain = [0.1, 0.1, 0.1]
-[environment]
-turbulence_sigma_m_s = 0.5
-[imu]
-grade = "tactical"
-"""
+EXPERIMENT = "tests/support/short_experiment.toml"
 PERIOD, PERIODS, RATE = 2000, 2, 50.0
 LINES = list(range(12, 91, 2))
 NOISE_EDGES = [0.01, 0.05, 0.15, 0.3, 0.6, 1.2, 2.5, 5.0, 10.0, 25.0]
@@ -125,10 +113,8 @@ def features(record):
 
 
 def check(seed):
-    with open(place("experiment.toml"), "w", encoding="utf-8") as file:
-        file.write(EXPERIMENT)
     flight = place(f"flight{seed}.csv")
-    run("simulate", "campaigns/models/fat.toml", place("experiment.toml"), "--seed", str(seed), "-o", flight)
+    run("simulate", "campaigns/models/fat.toml", EXPERIMENT, "--seed", str(seed), "-o", flight)
     with open(place(f"flight{seed}.toml"), "a", encoding="utf-8") as file:
         file.write('[environment]\nturbulence_sigma_m_s = 0.5\nimu_grade = "tactical"\n')
     out = place(f"out{seed}")

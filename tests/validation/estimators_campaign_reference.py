@@ -11,13 +11,14 @@ Then Tables 3-2 and 3-3 and the figures of 3.4.1 and 3.4.2 follow from the store
 """
 import json
 import pathlib
-import sqlite3
 import subprocess
 import sys
 import tempfile
 
 import numpy as np
 from scipy import stats
+
+from campaign_arrays import arrays
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LABELS = {"etfe": "ETFE", "tlpm": "tLPM", "fast_lpm": "fastLPM", "fast_lpm_indirect": "fastLPM, indirect"}
@@ -26,16 +27,6 @@ N, P = 1000, 2  # samples of a period, periods
 
 def call(fatmc, *arguments):
     return subprocess.run([fatmc, *arguments], check=True, cwd=ROOT, capture_output=True, text=True).stdout
-
-
-def arrays(path, cell):
-    db = sqlite3.connect(path)
-    out = {}
-    rows = db.execute("SELECT a.name, a.data FROM arrays a JOIN trials t ON t.cell = a.cell AND t.repetition = a.repetition "
-                      "WHERE a.cell = ? AND t.outcome = 'ok' ORDER BY a.repetition", (cell,))
-    for name, data in rows:
-        out.setdefault(name, []).append(np.frombuffer(data, "<f8"))
-    return {name: np.array(values) for name, values in out.items()}
 
 
 def pitch_response(fatmc, frequencies):

@@ -93,13 +93,13 @@ def check_tables(fatmc, database, a):
         what = parts[0]
         if row["table"] == "Section 5.4" or row["table"] == "Section 5.6" and rule is None:
             h, s = a["hinf_nominal"], a["ssv_nominal"]
-            value = {"runs with nominal H-infinity below 0 dB": 100 * (h < 1).all(1).mean(),
-                     "runs with nominal ssv below 0 dB": 100 * (s < 1).all(1).mean(),
+            value = {"share of all runs with nominal H-infinity below 0 dB": 100 * (h < 1).all(1).mean(),
+                     "share of all runs with nominal ssv below 0 dB": 100 * (s < 1).all(1).mean(),
                      "median of nominal H-infinity": decibel(np.median(h[:, -1])),
                      "lines with a median of nominal H-infinity below -10 dB":
                          100 * (decibel(np.median(h, 0)) < -10).mean(),
                      "nominal H-infinity above ssv": decibel(np.median(h, 0) / np.median(s, 0)).mean(),
-                     "runs with an input SNR below the limit at a line":
+                     "share of all runs with an input SNR below the limit at a line":
                          100 * (a["snr_min_db"] < 20).any(1).mean()}[what]
         elif row["table"] in ("Fig. 5-6", "Fig. 5-7"):
             key = READINGS[name]
@@ -121,12 +121,12 @@ def check_tables(fatmc, database, a):
             value = {"smallest median of p": np.median(p[:, part], 0).min(),
                      "smallest 25 % quantile of p": np.quantile(p[:, part], 0.25, axis=0).min(),
                      "largest 25 % quantile of p": np.quantile(p[:, part], 0.25, axis=0).max(),
-                     "runs with p = 0": 100 * (p[:, part] == 0).mean(),
-                     "runs with p = 0 at a line": 100 * (p == 0).any(1).mean(),
+                     "share of all runs with p = 0": 100 * (p[:, part] == 0).mean(),
+                     "share of all runs with p = 0 at a line": 100 * (p == 0).any(1).mean(),
                      "lines with p = 0 in 50 runs": 50 * (p == 0).sum(1).mean(),
-                     "runs above 99 %": 100 * (product > 0.99).mean(),
-                     "runs above 90 %": 100 * (product > 0.9).mean(),
-                     "runs at zero": 100 * (product == 0).mean()}[what]
+                     "share of all runs above 99 %": 100 * (product > 0.99).mean(),
+                     "share of all runs above 90 %": 100 * (product > 0.9).mean(),
+                     "share of all runs at zero": 100 * (product == 0).mean()}[what]
         worst = max(worst, abs(value - row["value"]))
         assert row["n"] == n and (row["low"] is None or row["low"] <= row["high"])
         checked += 1

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "campaigns/base/figure.h"
@@ -133,6 +134,28 @@ TEST(FillStatistic, OfFewRunsHasNoInterval) {
   fill_statistic(row, kFewestRuns - 1, 4, [](std::span<const std::size_t>) { return 1.0; });
   EXPECT_EQ(row.value, 1.0);
   EXPECT_TRUE(std::isnan(row.low));
+}
+
+TEST(FillExtreme, IsThatOfBlocksOfThePublishedSizeAndSaysWhatItsIntervalIsWorth) {
+  const std::vector<double> runs = {4.0, 3.0, 9.0, 5.0, 6.0, 7.0, 8.0, 1.0, 2.0};
+  const RunStatistic smallest = [&](std::span<const std::size_t> picks) {
+    double out = runs[picks.front()];
+    for (const std::size_t pick : picks) out = std::min(out, runs[pick]);
+    return out;
+  };
+  const auto filled = [&](std::size_t published_runs) {
+    TableRow row = judged(3.0, 0.0, 0.0, 0.0);
+    fill_extreme(row, runs.size(), published_runs, smallest, "80 to 90");
+    return row;
+  };
+  EXPECT_DOUBLE_EQ(filled(4).value, (3.0 + 1.0) / 2.0);  // the ninth run fills no block
+  EXPECT_DOUBLE_EQ(filled(9).value, 1.0);
+  EXPECT_NE(filled(9).why.find("hold 80 to 90 %"), std::string::npos);
+  EXPECT_DOUBLE_EQ(filled(50).value, 1.0);
+  EXPECT_NE(filled(50).why.find("of 9 runs lies further out than one of 50"), std::string::npos);
+  TableRow unprinted = table_row("T", "r", "q", "");
+  fill_extreme(unprinted, runs.size(), 50, smallest, "80 to 90");
+  EXPECT_EQ(unprinted.why, "");
 }
 
 TEST(FillStatistic, HasTheValueOfAllRuns) {

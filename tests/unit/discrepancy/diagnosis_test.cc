@@ -8,6 +8,8 @@
 #include "core/discrepancy/basis_file.h"
 #include "core/discrepancy/effect_knowledge.h"
 #include "core/discrepancy/effect_size.h"
+#include "core/discrepancy/fitted_law.h"
+#include "core/discrepancy/resonance.h"
 #include "core/signal/multisine.h"
 #include "tests/unit/flight/fat.h"
 
@@ -117,6 +119,61 @@ TEST_F(DiagnosisOfARecord, IsUnknownWhereNoCandidateExplainsIt) {
   const Diagnosis d = bench_->answer(
       bench_->record({*parse_effect("tone:axis=pitch,amplitude_deg_s=1,frequency_hz=0.8125")}, 6));
   EXPECT_EQ(d.verdict, Verdict::unknown);
+}
+
+TEST_F(DiagnosisOfARecord, TheLawWithoutEffectsIsThatOfTheModel) {
+  const Comparison comparison({{&bench_->model, bench_->basis.get(), bench_->record({}, 8)}}, 2);
+  // An effect at its nominal value: the flights are those of the model, bit for bit.
+  const auto law = FittedLaw::of(comparison, {*parse_effect("mass:factor=1")}, FittedLaw::kFlights);
+  ASSERT_TRUE(law);
+  EXPECT_LT(law->change().norm(), 1e-9);
+  EXPECT_LT((law->deviation().array() - 1.0).abs().maxCoeff(), 1e-9);
+  EXPECT_LT(law->excess(), 1e-9);
+  EXPECT_DOUBLE_EQ(law->scan_ratio(), 1.0);
+}
+
+TEST_F(DiagnosisOfARecord, TheLawWithTwiceTheTurbulenceHasTwiceTheDeviationAtTheLines) {
+  const Comparison comparison({{&bench_->model, bench_->basis.get(), bench_->record({}, 9)}}, 2);
+  const auto law = FittedLaw::of(comparison, {*parse_effect("turbulence:factor=2")}, FittedLaw::kFlights);
+  ASSERT_TRUE(law);
+  // p, q, r at the lines in the middle third, where gusts stand above the gyros' noise and the attitude's floor is not.
+  double sum = 0.0;
+  int count = 0;
+  const FeatureLayout& layout = bench_->layout;
+  for (const FeatureBlock& block : layout.blocks) {
+    if (block.kind != FeatureKind::line || block.line < 5 || block.line > 20) continue;
+    for (int c = 0; c < 3; ++c, ++count) sum += law->deviation()[block.first + c];
+  }
+  EXPECT_NEAR(sum / count, 2.0, 0.2);
+  // An estimate that reads one feature has its deviation, with what 16 flights leave uncertain (four standard errors).
+  Eigen::MatrixXd one = Eigen::MatrixXd::Zero(1, comparison.size());
+  one(0, layout.blocks[10].first) = 1.0;
+  EXPECT_NEAR(law->spread(one).deviation[0] / law->deviation()[layout.blocks[10].first], 1.0, 4.0 * 0.18);
+}
+
+TEST_F(DiagnosisOfARecord, AModeIsFoundBetweenTheSignaturesOfTheDictionary) {
+  // 1.03 Hz and a width of 6 %: none of the modes that are flown is near.
+  const Effect hidden = *parse_effect("flexible_mode:axis=yaw,slope=0.01,frequency_hz=1.03,damping=0.03");
+  const ResonanceGrid grid = resonance_grid(bench_->layout, *broad_resonance(hidden), [&] {
+    const std::vector<std::vector<Effect>> sets = {{*broad_resonance(hidden)}};
+    const EffectFlights flown = bench_->model.fly(sets, 0, 2, 2).front();
+    return Eigen::VectorXd((flown.features - bench_->basis->baseline.leftCols(2)).rowwise().mean());
+  }());
+  const std::vector<std::vector<Effect>> sets = {{hidden}};
+  const EffectFlights flown = bench_->model.fly(sets, 0, 2, 2).front();
+  const Eigen::VectorXd change = (flown.features - bench_->basis->baseline.leftCols(2)).rowwise().mean();
+  double best = 0.0;
+  std::size_t at = 0;
+  for (std::size_t e = 0; e < grid.effects.size(); ++e) {
+    const Eigen::VectorXd one = grid.differences.col(static_cast<Eigen::Index>(e));
+    const double cosine = one.dot(change) / (one.norm() * change.norm());
+    if (cosine > best) {
+      best = cosine;
+      at = e;
+    }
+  }
+  EXPECT_NEAR(grid.effects[at].value("frequency_hz"), 1.03, 0.02 * 1.03);
+  EXPECT_GT(best, 0.9);
 }
 
 TEST_F(DiagnosisOfARecord, DoesNotDependOnTheNumberOfThreads) {

@@ -58,13 +58,13 @@ TEST(StabilitySummary, CountsRunsBeyondTheLimitAtTheWorstLine) {
   at(rows[9], "limit.hinf", 0) = 1.5;  // another line: the worst has three
   const auto out = tables_of(rows);
   const TableRow& row =
-      find(out, "Fig. 5-6", "0.29-0.40 Hz", "largest share of runs above 0 dB, b of (2.145)");
+      find(out, "Fig. 5-6", "0.29-0.40 Hz", "largest share of all runs above 0 dB, b of (2.145)");
   EXPECT_DOUBLE_EQ(row.value, 30.0);
   EXPECT_DOUBLE_EQ(row.published, 25.0);
   EXPECT_EQ(row.verdict, "match");
   EXPECT_GE(row.low, 0.0);
   EXPECT_DOUBLE_EQ(
-      find(out, "Fig. 5-6", "2.1-2.5 Hz", "largest share of runs above 0 dB, b of (2.145)").value, 0.0);
+      find(out, "Fig. 5-6", "2.1-2.5 Hz", "largest share of all runs above 0 dB, b of (2.145)").value, 0.0);
   EXPECT_NEAR(
       find(out, "Section 5.4", "all lines", "nominal H-infinity above ssv, mean over the lines").value,
       20.0 * std::log10(2.0), 1e-12);
@@ -85,8 +85,10 @@ TEST(StabilitySummary, TakesQuantilesOverRunsAndExtremesOverLines) {
                    0.2);
   EXPECT_DOUBLE_EQ(
       find(out, "Fig. 5-8", "0.29-0.35 Hz", "smallest 25 % quantile of p, b of (2.145), min").value, 0.6);
-  EXPECT_DOUBLE_EQ(find(out, "Fig. 5-8", "0.33 Hz", "runs with p = 0, b of (2.145), min").value, 100.0);
-  EXPECT_DOUBLE_EQ(find(out, "Fig. 5-8", "0.34 Hz", "runs with p = 0, b of (2.145), min").value, 0.0);
+  EXPECT_DOUBLE_EQ(find(out, "Fig. 5-8", "0.33 Hz", "share of all runs with p = 0, b of (2.145), min").value,
+                   100.0);
+  EXPECT_DOUBLE_EQ(find(out, "Fig. 5-8", "0.34 Hz", "share of all runs with p = 0, b of (2.145), min").value,
+                   0.0);
 }
 
 TEST(StabilitySummary, MultipliesLinesIntoTheBandAndCountsFailedRunsAsNoConfidence) {
@@ -99,12 +101,27 @@ TEST(StabilitySummary, MultipliesLinesIntoTheBandAndCountsFailedRunsAsNoConfiden
   failed.outcome = "diverged";
   rows.push_back(failed);
   const auto out = tables_of(rows);
-  EXPECT_DOUBLE_EQ(find(out, "Fig. 5-10", "p(B)", "runs above 99 %, b of (2.145), min").value, 70.0);
-  EXPECT_DOUBLE_EQ(find(out, "Fig. 5-10", "p(B)", "runs above 90 %, b of (2.145), min").value, 80.0);
-  const TableRow& zero = find(out, "Fig. 5-10", "p(B)", "runs at zero, b of (2.145), min");
+  EXPECT_DOUBLE_EQ(find(out, "Fig. 5-10", "p(B)", "share of all runs above 99 %, b of (2.145), min").value,
+                   70.0);
+  EXPECT_DOUBLE_EQ(find(out, "Fig. 5-10", "p(B)", "share of all runs above 90 %, b of (2.145), min").value,
+                   80.0);
+  const TableRow& zero = find(out, "Fig. 5-10", "p(B)", "share of all runs at zero, b of (2.145), min");
   EXPECT_DOUBLE_EQ(zero.value, 20.0);
   EXPECT_EQ(zero.n, 10U);
   EXPECT_NE(zero.why.find("1 trials without an estimate"), std::string::npos);
+  // The same denominator everywhere, and nowhere on the side of stability.
+  const auto share = [&](const char* table, const char* row, const std::string& quantity) {
+    const TableRow& found = find(out, table, row, "share of all runs " + quantity);
+    EXPECT_EQ(found.n, 10U) << quantity;
+    return found.value;
+  };
+  EXPECT_DOUBLE_EQ(share("Section 5.4", "all lines", "with nominal ssv below 0 dB"), 90.0);
+  EXPECT_DOUBLE_EQ(share("Section 5.6", "all lines", "with an input SNR below the limit at a line"), 10.0);
+  EXPECT_DOUBLE_EQ(share("Fig. 5-8", "0.33 Hz", "with p = 0, b of (2.145), min"), 10.0);
+  EXPECT_DOUBLE_EQ(share("Fig. 5-9", "all lines", "with p = 0 at a line, b of (2.145), min"), 20.0);
+  EXPECT_DOUBLE_EQ(
+      find(out, "Fig. 5-7", "all lines", "largest share of all runs above 0 dB, b of (2.145)").value, 10.0);
+  for (const TableRow& row : out) EXPECT_FALSE(std::isnan(row.value)) << row.table << row.quantity;
 }
 
 TEST(StabilitySummary, TotalConfidenceNeedsNominalStabilityAndSnr) {
@@ -113,14 +130,20 @@ TEST(StabilitySummary, TotalConfidenceNeedsNominalStabilityAndSnr) {
   at(rows[0], std::string(kSmallestSnr), 2) = 19.9;
   at(rows[1], std::string(kNominalHInfinity), 2) = 1.1;  // ssv stays below 1
   const auto out = tables_of(rows);
-  EXPECT_DOUBLE_EQ(find(out, "Section 5.6", "total p(B), ssv", "runs at zero, b of (2.145), min").value,
-                   25.0);
   EXPECT_DOUBLE_EQ(
-      find(out, "Section 5.6", "total p(B), H-infinity", "runs at zero, b of (2.145), min").value, 50.0);
+      find(out, "Section 5.6", "total p(B), ssv", "share of all runs at zero, b of (2.145), min").value,
+      25.0);
   EXPECT_DOUBLE_EQ(
-      find(out, "Section 5.6", "all lines", "runs with an input SNR below the limit at a line").value, 25.0);
-  EXPECT_DOUBLE_EQ(find(out, "Section 5.4", "all lines", "runs with nominal H-infinity below 0 dB").value,
-                   75.0);
+      find(out, "Section 5.6", "total p(B), H-infinity", "share of all runs at zero, b of (2.145), min")
+          .value,
+      50.0);
+  EXPECT_DOUBLE_EQ(
+      find(out, "Section 5.6", "all lines", "share of all runs with an input SNR below the limit at a line")
+          .value,
+      25.0);
+  EXPECT_DOUBLE_EQ(
+      find(out, "Section 5.4", "all lines", "share of all runs with nominal H-infinity below 0 dB").value,
+      75.0);
 }
 
 TEST(StabilitySummary, HasARowForEveryPublishedFigureAndDrawsNineFigures) {
