@@ -35,7 +35,7 @@ Result<std::vector<StudyFigure>> figures(const CampaignSpec& spec, const RowSour
     if (!decoded) return fail(decoded.error());
     const ModelTable table = read_models(cell, rows);
     if (table.models.empty() || decoded->selections.empty()) continue;
-    const FlownTest flown = fly_test(decoded->truth, decoded->flight, spec.trial_seed({cell, 0}));
+    const FlownTest flown = recorded_test(decoded->truth, decoded->flight, spec.trial_seed({cell, 0}));
     add_figures({*decoded, flown, table, spec.cells.size() == 1 ? "" : ", " + spec.cells[cell].name}, out);
   }
   return out;

@@ -163,4 +163,11 @@ FlownTest fly_test(const Truth& truth, const FlightTest& test, const TrialSeed& 
   return out;
 }
 
+FlownTest recorded_test(const Truth& truth, const FlightTest& test, const TrialSeed& seed) {
+  FlownTest out = fly_test(truth, test, seed);
+  remove_offsets(out.sweeps, OffsetRemoval::mean);
+  remove_offsets(out.multisteps, OffsetRemoval::first);
+  return out;
+}
+
 }  // namespace fatmc::candidates

@@ -25,4 +25,8 @@ struct FlownTest {
 /// Every draw comes from streams of `seed`, one set a maneuver.
 FlownTest fly_test(const Truth& truth, const FlightTest& test, const TrialSeed& seed);
 
+/// The same without offsets, as models are identified from and validated on: means of the sweeps, first samples of the
+/// multisteps are taken off.
+FlownTest recorded_test(const Truth& truth, const FlightTest& test, const TrialSeed& seed);
+
 }  // namespace fatmc::candidates

@@ -158,9 +158,7 @@ Result<std::unique_ptr<PreparedCell>> prepare(const CampaignSpec& spec, std::uin
   auto decoded = decode_candidates(spec);
   if (!decoded) return fail(decoded.error());
   // One flight test for all blocks: that of repetition 0.
-  FlownTest flown = fly_test(decoded->truth, decoded->flight, spec.trial_seed({cell, 0}));
-  remove_offsets(flown.sweeps, OffsetRemoval::mean);
-  remove_offsets(flown.multisteps, OffsetRemoval::first);
+  FlownTest flown = recorded_test(decoded->truth, decoded->flight, spec.trial_seed({cell, 0}));
   if (Status status = check_maneuvers(flown.sweeps); !status) {
     Error error = status.error();
     const Tree* table = spec.tree.find("flight");
