@@ -40,6 +40,15 @@ double frequency_rad_s(int index) {
   return low * std::pow(high / low, static_cast<double>(index) / (kFrequencies - 1));
 }
 
+const std::vector<double>& study_frequencies() {
+  static const std::vector<double> values = [] {
+    std::vector<double> out;
+    for (int k = 0; k < kFrequencies; ++k) out.push_back(frequency_rad_s(k));
+    return out;
+  }();
+  return values;
+}
+
 Result<Validation> validate(const ModalModel& modal, std::span<const Maneuver> maneuvers) {
   Eigen::Index samples = 0;
   for (const Maneuver& maneuver : maneuvers) samples += maneuver.samples();
@@ -94,11 +103,11 @@ int count_artifacts(std::span<const Mode> modes, std::span<const Mode> truth) {
   return count;
 }
 
-std::vector<double> roll_magnitude_db(const ContinuousModel& model) {
+std::vector<double> roll_magnitude_db(const ContinuousModel& model, std::span<const double> rad_s) {
   const Eigen::Index n = model.a.rows();
   std::vector<double> out;
-  for (int k = 0; k < kFrequencies; ++k) {
-    const std::complex<double> s(0.0, frequency_rad_s(k));
+  for (const double w : rad_s) {
+    const std::complex<double> s(0.0, w);
     const Eigen::MatrixXcd shifted = s * Eigen::MatrixXcd::Identity(n, n) - model.a;
     const Eigen::VectorXcd x = Eigen::PartialPivLU<Eigen::MatrixXcd>(shifted).solve(
         model.b.col(kLateralInput).cast<std::complex<double>>());
@@ -138,7 +147,7 @@ Result<ModelAnalysis> analyse(const DiscreteModel& model, double rate_hz, std::s
     out.approval[i] = 1 + static_cast<int>(cs27_approval(*shares, kSeenShare));
   }
   out.artifacts = count_artifacts(modes[0], truth);
-  out.magnitude_db = roll_magnitude_db(*bare);
+  out.magnitude_db = roll_magnitude_db(*bare, study_frequencies());
   return out;
 }
 

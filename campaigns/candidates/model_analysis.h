@@ -49,7 +49,7 @@ inline constexpr double kTrackedNear = 0.3;
 /// By the zero-order hold. Fails where the model has no continuous counterpart.
 Result<ModelAnalysis> analyse(const DiscreteModel& model, double rate_hz, std::span<const Mode> truth);
 
-/// |p/delta_y| of a continuous model at the frequencies of the study.
-std::vector<double> roll_magnitude_db(const ContinuousModel& model);
+/// |p/delta_y| of a continuous model, deg/s per per cent in dB.
+std::vector<double> roll_magnitude_db(const ContinuousModel& model, std::span<const double> rad_s);
 
 }  // namespace fatmc::candidates

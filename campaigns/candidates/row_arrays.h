@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string_view>
+#include <vector>
 
 namespace fatmc::candidates {
 
@@ -64,5 +65,6 @@ inline constexpr std::array<JudgedResponse, 4> kJudged = {{{"pitch, bare", 0, 4,
 /// Of the transfer functions p/delta_y: 40 from 0.1 to 35 rad/s, equally spaced on a logarithmic axis.
 inline constexpr int kFrequencies = 40;
 double frequency_rad_s(int index);
+const std::vector<double>& study_frequencies();
 
 }  // namespace fatmc::candidates

@@ -9,6 +9,7 @@
 #include "campaigns/hidden_effect/limit_size.h"
 #include "campaigns/hidden_effect/row_metrics.h"
 #include "core/discrepancy/diagnosis.h"
+#include "core/discrepancy/fitted_law.h"
 
 namespace fatmc::hidden_effect {
 namespace {
@@ -124,9 +125,12 @@ class HiddenEffectTrials final : public PreparedCell {
     const double floor = unseen.thresholds().energy_mean, before = unseen.discrepancy().squaredNorm();
     double after = before;
     if (!d.effects.empty() && d.verdict != Verdict::unknown) {
-      const std::vector<std::vector<Effect>> sets = {d.effect_list()};
-      after = (unseen.discrepancy() - unseen.changes(sets, ComparisonBasis::kBaseline).col(0)).squaredNorm();
-      if (!std::isfinite(after)) after = before;  // what was named cannot be flown: nothing is gained
+      // By the law of chance with the effects: those that make noise leave more of it, which is no gap.
+      const auto law = FittedLaw::of(unseen, d.effect_list(), ComparisonBasis::kBaseline);
+      if (law) {  // else what was named cannot be flown: nothing is gained
+        after = (unseen.discrepancy() - law->change()).cwiseQuotient(law->deviation()).squaredNorm() -
+                law->excess();
+      }
     }
     row.metrics.emplace_back(kGapBefore, before / features);
     row.metrics.emplace_back(kGapAfter, after / features);

@@ -89,6 +89,16 @@ void print_summary(const DiagnosisPage& page) {
   for (const std::string& note : d.notes) std::printf("note: %s\n", note.c_str());
 }
 
+/// A row a candidate and size, the hardest to separate first; effects are quoted, since their texts hold commas.
+std::string separability_csv(const std::vector<Separation>& separations) {
+  std::string out = "effect,energy,nearest,angle_deg,left\n";
+  for (const Separation& s : separations) {
+    out += "\"" + s.effect.text() + "\"," + significant(s.energy, 4) + ",\"" + s.nearest.text() + "\"," +
+           significant(s.angle_deg, 4) + "," + significant(s.left, 4) + "\n";
+  }
+  return out;
+}
+
 Exit diagnose_records(const Options& options) {
   if (options.model.empty() || options.records.empty()) {
     return report(
@@ -115,6 +125,7 @@ Exit diagnose_records(const Options& options) {
   write_file_atomically(in("model.toml"), patched_model(done->page));
   write_file_atomically(in("patch.toml"), patch_toml(done->page));
   write_file_atomically(in("diagnosis.json"), diagnosis_json(done->page));
+  if (run.separability) write_file_atomically(in("separability.csv"), separability_csv(done->separations));
   print_summary(done->page);
   std::printf("written: %s, patch.toml, model.toml, report.html\n", in("diagnosis.json").c_str());
   return Exit::done;
@@ -140,6 +151,8 @@ void add_diagnose_command(CLI::App& app, Exit& exit) {
                       "records that take no part in the fit; none: every fifth line is held back");
   command->add_flag("--until-consistent", options->run.until_consistent,
                     "go on with the patched model until nothing is left to name");
+  command->add_flag("--separability", options->run.separability,
+                    "also write DIR/separability.csv: how far each effect is from the nearest other one");
   command->add_option("--exclude", options->run.excluded, "effects that are no candidates, by id")
       ->delimiter(',');
   command->add_option("--flights", options->run.flights, "flights of the model behind the law of chance")

@@ -228,6 +228,7 @@ Result<DiagnosisRun> run_diagnosis(const std::string& model_path, const std::vec
             "tell.");
       }
       note_invisible(comparison, page.diagnosis);
+      if (options.separability) out.separations = separations(comparison);
       for (const bool is_holdout : {false, true}) {
         const auto& own = is_holdout ? held : training;
         const Stack& from = is_holdout ? *held_stack : *stack;

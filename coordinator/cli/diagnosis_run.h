@@ -6,11 +6,13 @@
 
 #include "coordinator/cli/diagnosis_files.h"
 #include "coordinator/cli/diagnosis_report.h"
+#include "core/discrepancy/separability.h"
 
 namespace fatmc::cli {
 
 struct DiagnosisRunOptions {
   bool until_consistent = false;
+  bool separability = false;  ///< which effects these records could tell apart
   std::vector<std::string> excluded;
   int flights = 1000;
   int threads = 0;
@@ -24,6 +26,7 @@ struct DiagnosisRun {
   DiagnosisPage page;
   std::vector<ResponseOverlay> overlays;
   std::vector<MapEntry> map;
+  std::vector<Separation> separations;
 };
 
 Result<DiagnosisRun> run_diagnosis(const std::string& model, const std::vector<std::string>& records,

@@ -76,7 +76,7 @@ void FittedLaw::measure_noise(std::size_t record, const Matrix& with, const Matr
     const double a = mean_square(with, rows, flights - 1.0), b = mean_square(without, rows, flights - 1.0);
     const double shown = std::min(1.0, basis.baseline_variance[static_cast<Eigen::Index>(g)]);
     const double scale =
-        std::clamp(b > kLeastVariance && shown > kLeastVariance ? 1.0 - shown + shown * a / b : 1.0 + a,
+        std::clamp(b > kLeastVariance && shown > kLeastVariance ? 1.0 - shown + shown * a / b : 1.0 + a - b,
                    kLeastScale, kMostScale);
     for (const int row : rows) deviation_[first + row] = std::sqrt(scale);
     group_excess_[group + static_cast<Eigen::Index>(g)] =

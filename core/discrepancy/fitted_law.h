@@ -4,7 +4,7 @@
 // is known from many. For a group of features (comparison_basis.h) let v_a and v_b be the variances, in white coordinates, of
 // flights with and without, and f the variance of all flights without that are kept: 1 but where a floor stands for what no
 // flight shows. Then the deviation of the group with the effects is W,
-//   W^2 = 1 - f + f v_a/v_b   (v_b > 0.02, else 1 + v_a),
+//   W^2 = 1 - f + f v_a/v_b   (v_b > 0.02, else 1 + v_a - v_b),
 // and r/W is white as z is where the model is right, but for correlations that the effects bring. Intervals carry those as well:
 // of an estimate A r, the variance is that of A x over flights with the effects, by regression on the flights without (double
 // sampling, Cochran 1977, 12.6): with a = A x_a, b = A x_b,

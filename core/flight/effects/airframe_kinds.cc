@@ -140,7 +140,7 @@ std::vector<EffectKind> airframe_kinds() {
        .physics = "A propeller of inertia J that turns n times a second (J > 0: clockwise seen from behind) "
                   "has h = 2 pi n J along "
                   "x_b; M = -w x (h, 0, 0) = (0, -r h, q h) couples pitch and yaw with opposite signs.",
-       .parameters = {signed_difference("inertia_kg_m2", "kg m^2", "of the turning parts", 0.01, 0.04, 0.5)},
+       .parameters = {signed_difference("inertia_kg_m2", "kg m^2", "of the turning parts", 0.002, 0.008, 0.5)},
        .in_linear_airframe = true,
        .write = write_gyroscopics},
       {.id = "thrust_line",

@@ -201,6 +201,29 @@ TEST(CandidatesTrial, TablesAndFiguresComeFromItsRows) {
   EXPECT_EQ(drawn->size(), 13U);  // Figs. 2 to 5, 6 and 7 of four selections, 8 to 12
 }
 
+TEST(CandidatesTrial, ModelsComeBackFromTheirRowsAsTheyWereValidated) {
+  const CampaignSpec spec = tiny_spec();
+  const CandidatesSpec own = decoded(spec);
+  const auto cell = prepare_trials(kTrialStudy, spec, 0);
+  ASSERT_TRUE(cell);
+  const TrialRow stored = (*cell)->run(1);  // p = 20
+  const ModelTable table = read_models(
+      0, [&](std::uint32_t, const std::function<void(const TrialRow&)>& visit) { visit(stored); });
+  const FlownTest flown = fly_test(own.truth, own.flight, spec.trial_seed({0, 0}));
+  int compared = 0;
+  for (std::size_t i = 0; i < table.models.size(); ++i) {
+    const ModelAnalysisRow* analysis = table.analysis_of(i);
+    if (analysis == nullptr) continue;
+    ASSERT_EQ(analysis->model.model.a.rows(), table.models[i].order);
+    const auto again = validate(analysis->model, flown.multisteps);
+    ASSERT_TRUE(again.has_value());
+    EXPECT_DOUBLE_EQ(again->agreement, table.models[i].agreement);
+    EXPECT_DOUBLE_EQ(again->roll_rms, table.models[i].roll_rms);
+    ++compared;
+  }
+  EXPECT_EQ(compared, 2);  // n = 12 and 18
+}
+
 ModelRow model(int past, double agreement, double norm) {
   return {past, 20, 12, ModelState::ok, agreement, 1.0, norm, agreement, 1.0, -1};
 }

@@ -33,7 +33,7 @@ class BasisCache : public testing::Test {
         grid(*LpmGrid::create(experiment(), {}, 3)),
         model(fat(), setup(), {}, reference(), FeatureExtractor(layout, setup().gain)),
         folder(fs::temp_directory_path() / ("basis_cache_test_" + std::to_string(getpid()))) {
-    options.flights = ComparisonBasis::kPaired + 20;
+    options.flights = ComparisonBasis::kPaired;
     for (const Effect& e : effect_variants()) {
       if (e.id != "gyro_scale" && e.id != "transport_delay") options.excluded.push_back(e.id);
     }
