@@ -23,6 +23,8 @@ struct Axis {
   Scale scale = Scale::linear;
   std::optional<Range> range;  ///< none: what the panel's marks span
   std::vector<double> ticks;   ///< empty: round numbers
+  /// One a tick, instead of numbers: names of things. Along x they stand upright below the panel.
+  std::vector<std::string> tick_labels{};
 };
 
 /// Hues that differ in light and dark and to colour-blind eyes.
@@ -99,7 +101,15 @@ struct Rule {
   Dash dash = Dash::dashed;
 };
 
-using Mark = std::variant<Line, Band, Points, Bars, Boxes, Rule>;
+/// Squares of a matrix, each a unit wide and high about its place, as deep in colour as its share (0 to 1), with the share in %
+/// from 1 % on. Squares that are not given stay empty.
+struct Cells {
+  std::string name;
+  std::vector<double> x, y, share;
+  Hue hue = Hue::blue;
+};
+
+using Mark = std::variant<Line, Band, Points, Bars, Boxes, Rule, Cells>;
 
 struct Panel {
   std::string title;

@@ -192,4 +192,10 @@ void judge_exact(TableRow& row, double last_digit, std::string_view reason) {
   add_reason(row, reason);
 }
 
+void judge_category(TableRow& row, std::string_view reason) {
+  if (std::isnan(row.published) || std::isnan(row.value)) return;
+  row.verdict = row.value == row.published ? "match" : "differs";
+  if (row.verdict == "differs") add_reason(row, reason);
+}
+
 }  // namespace fatmc

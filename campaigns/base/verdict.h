@@ -72,4 +72,7 @@ void judge_by_side(TableRow& row, double nominal, std::string_view reason);
 /// else as judge_by_order without an interval.
 void judge_exact(TableRow& row, double last_digit, std::string_view reason);
 
+/// For a figure that names a kind, a level for instance, where near is no virtue: `match` if equal, else `differs`.
+void judge_category(TableRow& row, std::string_view reason);
+
 }  // namespace fatmc

@@ -33,8 +33,8 @@ Status decode_truth(const Tree& tree, Truth& out) {
       table.reject(key, "the study needs these channels in this order: " + list);
     }
   };
-  names("inputs", {"delta_x", "delta_y", "delta_p", "delta_0"});
-  names("outputs", {"u", "v", "w", "p", "q", "r", "phi", "theta"});
+  names("inputs", input_names());
+  names("outputs", output_names());
   out.model.a = matrix(table, "A", states, states);
   out.model.b = matrix(table, "B", states, kInputs);
   out.model.c = matrix(table, "C", kOutputs, states);
@@ -119,6 +119,16 @@ Status decode_selection(const Tree& tree, const Identification& identification, 
 }
 
 }  // namespace
+
+const std::vector<std::string>& input_names() {
+  static const std::vector<std::string> names = {"delta_x", "delta_y", "delta_p", "delta_0"};
+  return names;
+}
+
+const std::vector<std::string>& output_names() {
+  static const std::vector<std::string> names = {"u", "v", "w", "p", "q", "r", "phi", "theta"};
+  return names;
+}
 
 std::size_t Identification::blocks() const {
   const auto size = static_cast<std::size_t>(block);

@@ -13,6 +13,8 @@ namespace fatmc::candidates {
 
 /// Channels of H (2), in this order.
 inline constexpr int kInputs = 4, kOutputs = 8;
+const std::vector<std::string>& input_names();
+const std::vector<std::string>& output_names();
 
 /// The aircraft that flies: x[n+1] = A x + B u, y = C x, outputs of H (2) in SI and rad, controls in per cent.
 struct Truth {

@@ -43,13 +43,14 @@ StudyFigure level_figure(const CellData& cell, const Selection& selection, const
   plot::Panel panel;
   panel.x = {"real part, 1/s", plot::Scale::linear, {}, {}};
   panel.y = {"imaginary part, rad/s", plot::Scale::linear, {}, {}};
-  double highest = 1.0;
+  double highest = 1.0, left = -1.0, right = 0.2;
   const std::size_t first = roll ? 2 : 0;
   for (const std::size_t k : {first, first + 1}) {
     const plot::Hue hue = k == 0 ? plot::Hue::grey : (k == 3 ? plot::Hue::orange : plot::Hue::blue);
     plot::Points points = seen_modes(cell, candidates, kJudged[k]), own = seen_modes(cell, truth, kJudged[k]);
     for (const plot::Points* set : {&points, &own}) {
       for (const double y : set->y) highest = std::max(highest, y);
+      for (const double x : set->x) left = std::min(left, x), right = std::max(right, x);
     }
     points.name = kJudged[k].name;
     points.hue = own.hue = hue;
@@ -69,6 +70,7 @@ StudyFigure level_figure(const CellData& cell, const Selection& selection, const
                                    plot::Dash::dashed});
   panel.marks.push_back(plot::Rule{"level 2 left of it: damping 0 (unverified)", 0.0, true, plot::Hue::red,
                                    plot::Dash::dashed});
+  panel.x.range = plot::Range{1.05 * left, 1.2 * right};
   plot::Figure figure;
   figure.title = std::string("Dynamic stability in ") + (roll ? "roll" : "pitch") +
                  ", candidates of n = " + std::to_string(selection.order) + cell.suffix;

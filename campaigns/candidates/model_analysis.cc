@@ -10,6 +10,8 @@
 #include "core/accuracy/series_accuracy.h"
 #include "core/handling/control_loop.h"
 #include "core/handling/requirements.h"
+#include "core/stats/empirical.h"
+#include "core/subspace/eigenvalues.h"
 #include "core/subspace/model_fit.h"
 
 namespace fatmc::candidates {
@@ -33,11 +35,36 @@ Result<double> agreement(const Eigen::Ref<const Eigen::VectorXd>& measured,
   return std::max(0.0, *index);
 }
 
+/// Oscillatory modes in which that angular rate is the largest of the three; all for -1.
+Result<std::vector<Mode>> modes_of_rate(const ContinuousModel& vehicle, int rate) {
+  const auto pairs = eigenpairs_of(vehicle.a);
+  if (!pairs) return fail("A is not finite");
+  std::vector<Mode> out;
+  for (Eigen::Index i = 0; i < pairs->values.size(); ++i) {
+    if (!(pairs->values(i).imag() > 0.0)) continue;
+    Eigen::Index largest = 0;
+    (vehicle.c.middleRows<3>(kRollRate).cast<std::complex<double>>() * pairs->vectors.col(i))
+        .cwiseAbs()
+        .maxCoeff(&largest);
+    if (rate < 0 || kRollRate + largest == rate) out.push_back({pairs->values(i)});
+  }
+  return out;
+}
+
 }  // namespace
 
 double frequency_rad_s(int index) {
   constexpr double low = 0.1, high = 35.0;
   return low * std::pow(high / low, static_cast<double>(index) / (kFrequencies - 1));
+}
+
+const std::vector<double>& study_frequencies() {
+  static const std::vector<double> values = [] {
+    std::vector<double> out;
+    for (int k = 0; k < kFrequencies; ++k) out.push_back(frequency_rad_s(k));
+    return out;
+  }();
+  return values;
 }
 
 Result<Validation> validate(const ModalModel& modal, std::span<const Maneuver> maneuvers) {
@@ -76,29 +103,37 @@ Result<Validation> validate(const ModalModel& modal, std::span<const Maneuver> m
   return out;
 }
 
-std::vector<Mode> truth_modes(const DiscreteModel& truth, double rate_hz) {
-  const auto continuous = continuous_model(truth, 1.0 / rate_hz, Continuation::zoh);
-  if (!continuous) return {};
-  const auto modes = modes_of(continuous->a);
-  return modes ? *modes : std::vector<Mode>{};
+Result<TruthResponse> truth_response(const DiscreteModel& truth, double rate_hz) {
+  auto bare = continuous_model(truth, 1.0 / rate_hz, Continuation::zoh);
+  if (!bare) return fail(bare.error());
+  TruthResponse out;
+  out.magnitude_db = roll_magnitude_db(*bare, study_frequencies());
+  out.bare = std::move(*bare);
+  return out;
 }
 
-int count_artifacts(std::span<const Mode> modes, std::span<const Mode> truth) {
+int count_artifacts(const ContinuousModel& bare, std::span<const Mode> modes,
+                    std::span<const double> magnitude_db, const TruthResponse& truth) {
+  std::vector<double> difference;
+  for (std::size_t k = 0; k < magnitude_db.size() && study_frequencies()[k] <= kArtifactRad_s; ++k)
+    difference.push_back(magnitude_db[k] - truth.magnitude_db[k]);
+  const double level = sample_quantile(difference, 0.5);
   int count = 0;
   for (const Mode& mode : modes) {
-    if (!mode.oscillatory() || std::abs(mode.s) >= kArtifactRad_s ||
-        std::abs(mode.damping()) >= kArtifactDamping)
-      continue;
-    if (!nearest_mode(truth, mode, kNear)) ++count;
+    const double w = mode.s.imag();
+    if (!(w >= study_frequencies().front() && w < kArtifactRad_s)) continue;
+    const double excess =
+        roll_magnitude_db(bare, {&w, 1}).front() - roll_magnitude_db(truth.bare, {&w, 1}).front() - level;
+    if (excess > kArtifact_db) ++count;
   }
   return count;
 }
 
-std::vector<double> roll_magnitude_db(const ContinuousModel& model) {
+std::vector<double> roll_magnitude_db(const ContinuousModel& model, std::span<const double> rad_s) {
   const Eigen::Index n = model.a.rows();
   std::vector<double> out;
-  for (int k = 0; k < kFrequencies; ++k) {
-    const std::complex<double> s(0.0, frequency_rad_s(k));
+  for (const double w : rad_s) {
+    const std::complex<double> s(0.0, w);
     const Eigen::MatrixXcd shifted = s * Eigen::MatrixXcd::Identity(n, n) - model.a;
     const Eigen::VectorXcd x = Eigen::PartialPivLU<Eigen::MatrixXcd>(shifted).solve(
         model.b.col(kLateralInput).cast<std::complex<double>>());
@@ -109,22 +144,17 @@ std::vector<double> roll_magnitude_db(const ContinuousModel& model) {
   return out;
 }
 
-Result<ModelAnalysis> analyse(const DiscreteModel& model, double rate_hz, std::span<const Mode> truth) {
-  const auto bare = continuous_model(model, 1.0 / rate_hz, Continuation::zoh);
-  if (!bare) return fail(bare.error());
-  const std::array<ContinuousModel, 3> vehicles = {*bare, stabilized_vehicle(*bare),
-                                                   optimized_vehicle(*bare)};
-  std::array<std::vector<Mode>, 3> modes;
-  for (std::size_t i = 0; i < vehicles.size(); ++i) {
-    const auto found = modes_of(vehicles[i].a);
-    if (!found) return fail(found.error());
-    modes[i] = *found;
-  }
+Result<ModelAnalysis> analyse(const ContinuousModel& bare, std::span<const double> magnitude_db,
+                              const TruthResponse& truth) {
+  const std::array<ContinuousModel, 3> vehicles = {bare, stabilized_vehicle(bare), optimized_vehicle(bare)};
+  const auto bare_modes = modes_of(bare.a);
+  if (!bare_modes) return fail(bare_modes.error());
   ModelAnalysis out;
   for (std::size_t i = 0; i < kTrackedModes.size(); ++i) {
     const TrackedMode& wanted = kTrackedModes[i];
-    const auto mode = nearest_mode(modes[static_cast<std::size_t>(wanted.vehicle)],
-                                   mode_of(wanted.period_s, wanted.damping), kTrackedNear);
+    const auto modes = modes_of_rate(vehicles[static_cast<std::size_t>(wanted.vehicle)], wanted.rate);
+    if (!modes) return fail(modes.error());
+    const auto mode = nearest_mode(*modes, mode_of(wanted.period_s, wanted.damping), kTrackedNear);
     if (!mode) continue;
     out.period_s[i] = mode->period_s();
     out.damping[i] = mode->damping();
@@ -136,9 +166,11 @@ Result<ModelAnalysis> analyse(const DiscreteModel& model, double rate_hz, std::s
     if (!shares) continue;
     out.level[i] = ads33_level(*shares, kSeenShare);
     out.approval[i] = 1 + static_cast<int>(cs27_approval(*shares, kSeenShare));
+    out.diverging[i] = std::any_of(shares->begin(), shares->end(), [](const ModeShare& mode) {
+      return !mode.mode.oscillatory() && mode.mode.s.real() > 0.0 && mode.share >= kSeenShare;
+    });
   }
-  out.artifacts = count_artifacts(modes[0], truth);
-  out.magnitude_db = roll_magnitude_db(*bare);
+  out.artifacts = count_artifacts(bare, *bare_modes, magnitude_db, truth);
   return out;
 }
 

@@ -29,27 +29,35 @@ inline constexpr std::size_t kRollManeuver = 2;
 Result<Validation> validate(const ModalModel& modal, std::span<const Maneuver> maneuvers);
 
 struct ModelAnalysis {
-  std::array<double, kTrackedModes.size()> period_s{}, damping{};
-  std::array<int, kJudged.size()> level{}, approval{};
+  std::array<double, kTrackedModes.size()> period_s{}, damping{};  ///< 0 where no mode is near
+  std::array<int, kJudged.size()> level{},
+      approval{};                                ///< ADS-33; CS-27: 1 single, 2 two pilots, 3 none. 0 without
+  std::array<bool, kJudged.size()> diverging{};  ///< an unstable real pole shows in the response
   int artifacts = 0;
-  std::vector<double> magnitude_db;  ///< kFrequencies values
 };
 
-/// Modes of the bare truth, against which resonances are counted.
-std::vector<Mode> truth_modes(const DiscreteModel& truth, double rate_hz);
+/// What a model is held against.
+struct TruthResponse {
+  ContinuousModel bare;
+  std::vector<double> magnitude_db;  ///< of p/delta_y at study_frequencies()
+};
+/// Fails where the truth has no continuous counterpart.
+Result<TruthResponse> truth_response(const DiscreteModel& truth, double rate_hz);
 
-/// Oscillatory modes below kArtifactRad_s, damped less than kArtifactDamping either way, farther than kNear of
-/// |s| from every oscillatory mode of the truth: resonances without physical counterpart (H 4.2).
-int count_artifacts(std::span<const Mode> modes, std::span<const Mode> truth);
-inline constexpr double kArtifactRad_s = 3.0, kArtifactDamping = 0.1;
-inline constexpr double kNear = 0.5;
+/// Resonances without physical counterpart (H 4.2): oscillatory modes between the lowest of study_frequencies() and
+/// kArtifactRad_s at whose frequency |p/delta_y| stands more than kArtifact_db above the truth's, once the median difference
+/// over these frequencies is taken off. `magnitude_db` is the model's at study_frequencies().
+int count_artifacts(const ContinuousModel& bare, std::span<const Mode> modes,
+                    std::span<const double> magnitude_db, const TruthResponse& truth);
+inline constexpr double kArtifactRad_s = 3.0, kArtifact_db = 6.0;
 /// A mode is taken for a published one within that share of its |s|: roll/flap and lead-lag are 0.34 apart.
 inline constexpr double kTrackedNear = 0.3;
 
-/// By the zero-order hold. Fails where the model has no continuous counterpart.
-Result<ModelAnalysis> analyse(const DiscreteModel& model, double rate_hz, std::span<const Mode> truth);
+/// Of a continuous model in H's units. Fails where A is not finite.
+Result<ModelAnalysis> analyse(const ContinuousModel& bare, std::span<const double> magnitude_db,
+                              const TruthResponse& truth);
 
-/// |p/delta_y| of a continuous model at the frequencies of the study.
-std::vector<double> roll_magnitude_db(const ContinuousModel& model);
+/// |p/delta_y| of a continuous model, deg/s per per cent in dB.
+std::vector<double> roll_magnitude_db(const ContinuousModel& model, std::span<const double> rad_s);
 
 }  // namespace fatmc::candidates

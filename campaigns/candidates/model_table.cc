@@ -49,22 +49,11 @@ class ModelReader {
 
 void add_analyses(const TrialRow& row, std::size_t first, ModelTable& table) {
   const auto& analysed = need(row, kAnalysed);
-  const auto &period = need(row, kPeriod), &damping = need(row, kDamping), &level = need(row, kLevel),
-             &approval = need(row, kApproval), &artifacts = need(row, kArtifacts),
-             &magnitude = need(row, kMagnitude);
-  constexpr std::size_t modes = kTrackedModes.size(), judged = kJudged.size(), grid = kFrequencies;
+  const auto& magnitude = need(row, kMagnitude);
+  constexpr std::size_t grid = kFrequencies;
   ModelReader models(row);
   for (std::size_t k = 0; k < analysed.size(); ++k) {
     ModelAnalysisRow out;
-    for (std::size_t i = 0; i < modes; ++i) {
-      out.period_s[i] = period[k * modes + i];
-      out.damping[i] = damping[k * modes + i];
-    }
-    for (std::size_t i = 0; i < judged; ++i) {
-      out.level[i] = static_cast<int>(level[k * judged + i]);
-      out.approval[i] = static_cast<int>(approval[k * judged + i]);
-    }
-    out.artifacts = static_cast<int>(artifacts[k]);
     const auto begin = magnitude.begin() + static_cast<std::ptrdiff_t>(k * grid);
     out.magnitude_db.assign(begin, begin + static_cast<std::ptrdiff_t>(grid));
     ModelRow& model = table.models[first + static_cast<std::size_t>(analysed[k])];
@@ -131,10 +120,12 @@ Selected select(const ModelTable& table, const Selection& selection) {
   std::sort(norms.begin(), norms.end());
   const auto kept =
       static_cast<std::size_t>(std::lround(selection.smallest_norms * static_cast<double>(norms.size())));
-  out.limit = selection.norm;
-  if (selection.smallest_norms > 0.0) out.limit = kept < norms.size() ? norms[kept] : INFINITY;
+  // Equal norms, of 0 by underflow for instance, are accepted together.
+  const bool smallest = selection.smallest_norms > 0.0;
+  out.limit = smallest ? (kept > 0 ? norms[kept - 1] : 0.0) : selection.norm;
   for (const std::size_t i : out.all) {
-    if (table.models[i].norm < out.limit) out.accepted.push_back(i);
+    const double norm = table.models[i].norm;
+    if (smallest ? kept > 0 && norm <= out.limit : norm < out.limit) out.accepted.push_back(i);
   }
   const auto count = static_cast<std::size_t>(std::lround(selection.share * static_cast<double>(of_order)));
   out.best = leading(out.all, count);

@@ -13,9 +13,6 @@
 namespace fatmc::candidates {
 
 struct ModelAnalysisRow {
-  std::array<double, kTrackedModes.size()> period_s{}, damping{};  ///< 0 where no mode is near
-  std::array<int, kJudged.size()> level{}, approval{};
-  int artifacts = 0;
   std::vector<double> magnitude_db;
   ModalModel model;  ///< discrete, as it was validated
 };

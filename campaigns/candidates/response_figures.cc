@@ -17,15 +17,23 @@ using Indices = std::vector<std::size_t>;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-std::vector<double> frequencies() {
+/// Four to a frequency of the study: resonances and zeros of a single curve are narrower than its grid.
+std::vector<double> fine_frequencies() {
   std::vector<double> out;
-  for (int k = 0; k < kFrequencies; ++k) out.push_back(frequency_rad_s(k));
+  const std::vector<double>& coarse = study_frequencies();
+  for (std::size_t k = 0; k + 1 < coarse.size(); ++k) {
+    for (int i = 0; i < 4; ++i) out.push_back(coarse[k] * std::pow(coarse[k + 1] / coarse[k], 0.25 * i));
+  }
+  out.push_back(coarse.back());
   return out;
 }
 
-std::vector<double> truth_magnitude(const CandidatesSpec& spec) {
-  const auto continuous = continuous_model(spec.truth.model, 1.0 / spec.truth.rate_hz, Continuation::zoh);
-  return continuous ? roll_magnitude_db(*continuous) : std::vector<double>{};
+plot::Line response(const std::string& name, const CandidatesSpec& spec, const DiscreteModel& model,
+                    plot::Hue hue, plot::Dash dash) {
+  const auto continuous = continuous_model(model, 1.0 / spec.truth.rate_hz, Continuation::zoh);
+  if (!continuous) return {name, {}, {}, hue, dash};
+  std::vector<double> w = fine_frequencies(), db = roll_magnitude_db(*continuous, w);
+  return {name, std::move(w), std::move(db), hue, dash};
 }
 
 /// Mean, standard deviation and extremes of a set, in dB.
@@ -46,7 +54,7 @@ void add_spread(plot::Panel& panel, const ModelTable& table, const Indices& set)
     }
   }
   if (n == 0.0) return;
-  const std::vector<double> x = frequencies();
+  const std::vector<double>& x = study_frequencies();
   std::vector<double> below, above;
   for (std::size_t k = 0; k < x.size(); ++k) {
     mean[k] /= n;
@@ -61,7 +69,7 @@ void add_spread(plot::Panel& panel, const ModelTable& table, const Indices& set)
 }
 
 plot::Panel responses(const std::string& title, const CellData& cell, const Indices& set,
-                      const std::vector<double>& truth, const std::optional<MeasuredResponse>& measured) {
+                      const std::optional<MeasuredResponse>& measured) {
   plot::Panel panel;
   panel.title = title;
   panel.x = {"frequency, rad/s", plot::Scale::logarithmic, {}, {}};
@@ -70,12 +78,14 @@ plot::Panel responses(const std::string& title, const CellData& cell, const Indi
   const auto best = std::find_if(set.begin(), set.end(),
                                  [&](std::size_t i) { return cell.table.analysis_of(i) != nullptr; });
   if (best != set.end())
-    panel.marks.push_back(plot::Line{"best by d1", frequencies(), cell.table.analysis_of(*best)->magnitude_db,
-                                     plot::Hue::red, plot::Dash::solid});
-  if (measured)
+    panel.marks.push_back(response("best by d1", cell.spec, cell.table.analysis_of(*best)->model.model,
+                                   plot::Hue::red, plot::Dash::solid));
+  if (measured) {
     panel.marks.push_back(plot::Line{"measured", measured->frequency_rad_s, measured->decibel,
                                      plot::Hue::orange, plot::Dash::solid});
-  panel.marks.push_back(plot::Line{"truth", frequencies(), truth, plot::Hue::blue, plot::Dash::dashed});
+  }
+  panel.marks.push_back(
+      response("truth", cell.spec, cell.spec.truth.model, plot::Hue::blue, plot::Dash::dashed));
   return panel;
 }
 
@@ -112,17 +122,15 @@ std::optional<MeasuredResponse> measured_response(const CandidatesSpec& spec, co
 
 StudyFigure best_response_figure(const CellData& cell, const Selected& selected, int order,
                                  const std::optional<MeasuredResponse>& measured) {
-  const std::vector<double> truth = truth_magnitude(cell.spec);
   plot::Figure figure;
   figure.title = "Roll response of the models, n = " + std::to_string(order) + cell.suffix;
   figure.columns = 2;
-  figure.panels = {responses("all", cell, selected.all, truth, measured),
-                   responses("best by d1", cell, selected.best, truth, measured)};
+  figure.panels = {responses("all", cell, selected.all, measured),
+                   responses("best by d1", cell, selected.best, measured)};
   return {"Fig. 5" + cell.suffix, kCaption, std::move(figure)};
 }
 
 StudyFigure candidate_response_figure(const CellData& cell, const std::optional<MeasuredResponse>& measured) {
-  const std::vector<double> truth = truth_magnitude(cell.spec);
   plot::Figure figure;
   figure.title = "Roll response of the candidates" + cell.suffix;
   figure.columns = 2;
@@ -130,7 +138,7 @@ StudyFigure candidate_response_figure(const CellData& cell, const std::optional<
     const Indices candidates = select(cell.table, selection).candidates;
     figure.panels.push_back(responses("n = " + std::to_string(selection.order) + ", " +
                                           selection.limit_text() + (candidates.empty() ? ": none" : ""),
-                                      cell, candidates, truth, measured));
+                                      cell, candidates, measured));
   }
   return {"Fig. 8" + cell.suffix, kCaption, std::move(figure)};
 }

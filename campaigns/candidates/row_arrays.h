@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string_view>
+#include <vector>
 
 namespace fatmc::candidates {
 
@@ -14,19 +15,15 @@ inline constexpr std::string_view kAgreement = "d1";  ///< overall index of agre
 inline constexpr std::string_view kRms = "j_rms";     ///< H (9), ft/s, deg/s, deg; 0 without
 /// The same of the roll rate alone in the first lateral multistep (H Figs. 2, 3); deg/s.
 inline constexpr std::string_view kRollAgreement = "roll_d1", kRollRms = "roll_rms";
-inline constexpr std::string_view kNorm = "norm";      ///< spectral norm of A_K^p; 0 without
-inline constexpr std::string_view kLambda = "lambda";  ///< a value a past window
+inline constexpr std::string_view kNorm = "norm";  ///< spectral norm of A_K^p; 0 without
+inline constexpr std::string_view kLambda =
+    "lambda";  ///< a value a past window; 0 where all its models failed
 
 enum class ModelState { ok = 0, not_identified = 1, not_validated = 2 };
 
 // Models of the orders that are selected from, in the same order: kAnalysed holds their index in the lists
-// above. Of each kTrackedModes periods and dampings; 0 where no mode is near (or no continuous model exists).
+// above. Models without a continuous counterpart are left out.
 inline constexpr std::string_view kAnalysed = "analysed";
-inline constexpr std::string_view kPeriod = "mode_period_s", kDamping = "mode_damping";
-inline constexpr std::string_view kLevel = "ads33_level";  ///< kJudged values, 0 without
-inline constexpr std::string_view kApproval =
-    "cs27_approval";  ///< kJudged values: 1 single, 2 two, 3 none, 0 without
-inline constexpr std::string_view kArtifacts = "artifacts";  ///< number of resonances the truth does not have
 inline constexpr std::string_view kMagnitude =
     "p_delta_y_db";  ///< kFrequencies values, deg/s per per cent in dB
 
@@ -43,12 +40,16 @@ struct TrackedMode {
   const char* name;
   int vehicle;  ///< 0 bare, 1 stabilized (14), 2 optimized (15)
   double period_s, damping;
+  /// The angular rate, by its output, that moves most in the mode; -1: whichever. With the SCAS the Dutch roll is as fast
+  /// as the phugoid.
+  int rate;
 };
-inline constexpr std::array<TrackedMode, 5> kTrackedModes = {{{"phugoid, bare", 0, 19.2, -0.16},
-                                                              {"phugoid, SCAS", 1, 4.9, 0.4},
-                                                              {"roll/flap, SCAS", 1, 0.45, 0.32},
-                                                              {"lead-lag, SCAS", 1, 0.55, 0.03},
-                                                              {"roll/flap, SCAS and filter", 2, 0.43, 0.58}}};
+inline constexpr std::array<TrackedMode, 5> kTrackedModes = {
+    {{"phugoid, bare", 0, 19.2, -0.16, 4},
+     {"phugoid, SCAS", 1, 4.9, 0.4, 4},
+     {"roll/flap, SCAS", 1, 0.45, 0.32, -1},
+     {"lead-lag, SCAS", 1, 0.55, 0.03, -1},
+     {"roll/flap, SCAS and filter", 2, 0.43, 0.58, -1}}};
 
 /// What is judged by CS-27 and ADS-33: a vehicle's response of an output to an input.
 struct JudgedResponse {
@@ -64,5 +65,6 @@ inline constexpr std::array<JudgedResponse, 4> kJudged = {{{"pitch, bare", 0, 4,
 /// Of the transfer functions p/delta_y: 40 from 0.1 to 35 rad/s, equally spaced on a logarithmic axis.
 inline constexpr int kFrequencies = 40;
 double frequency_rad_s(int index);
+const std::vector<double>& study_frequencies();
 
 }  // namespace fatmc::candidates

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 
 #include "campaigns/base/prepared_trials.h"
 #include "campaigns/base/verdict.h"
-#include "campaigns/candidates/model_table.h"
+#include "campaigns/candidates/judged_models.h"
 #include "core/base/text.h"
 #include "core/stats/empirical.h"
 
@@ -18,6 +19,9 @@ namespace {
 constexpr double kSpread = 1.96;  // standard deviations of an interval
 constexpr const char* kOneRecord =
     "one flight test: the interval is the spread of the candidates, which H takes for the uncertainty";
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* kNoModel = "no model has a norm below the limit";
 
 /// Rows of one cell, with what print says of it.
 class CellTables {
@@ -44,7 +48,7 @@ class CellTables {
   void add_claim(TableRow row, bool alike, const std::string& why) const {
     if (!std::isnan(row.published)) {
       row.verdict = alike ? "shape" : "differs";
-      row.why = why;
+      row.why += (row.why.empty() ? "" : "; ") + why;
     }
     out_.push_back(std::move(row));
   }
@@ -82,9 +86,11 @@ void add_counts(const ModelTable& table, const CellTables& out) {
 }
 
 void add_figure_4(const ModelTable& table, const CellTables& out) {
-  std::map<int, std::vector<double>> by_order;
+  std::map<int, std::vector<double>> by_order, rms_by_order;
   for (const ModelRow& model : table.models) {
-    if (model.state == ModelState::ok) by_order[model.order].push_back(model.agreement);
+    if (model.state != ModelState::ok) continue;
+    by_order[model.order].push_back(model.agreement);
+    rms_by_order[model.order].push_back(model.rms);
   }
   for (const auto& [order, values] : by_order) {
     const EmpiricalCdf cdf(values);
@@ -98,45 +104,61 @@ void add_figure_4(const ModelTable& table, const CellTables& out) {
       out.add(out.row("Fig. 4", name, quantity, "", cdf.quantile(p), values.size()));
     out.add(out.row("Fig. 4", name, "share of adequate models (d1 from 0.80)", "%",
                     100.0 * (1.0 - cdf(0.8 - 1e-12)), values.size()));
+    out.add(out.row("Fig. 4", name, "share of adequate models (J_rms up to 3.5)", "%",
+                    100.0 * EmpiricalCdf(rms_by_order[order])(3.5), values.size()));
   }
 }
 
-void add_artifacts(const ModelTable& table, const Selected& selected, const std::string& name,
+void add_artifacts(const JudgedModels& models, const Selected& selected, const std::string& name,
                    const CellTables& out) {
-  const auto share = [&](const std::vector<std::size_t>& set, std::uint64_t& n) {
+  const auto share = [&](const std::vector<std::size_t>& set) {
     double with = 0.0;
-    n = 0;
-    for (const std::size_t i : set) {
-      const int analysis = table.models[i].analysis;
-      if (analysis < 0) continue;
-      ++n;
-      with += table.analyses[static_cast<std::size_t>(analysis)].artifacts > 0 ? 1.0 : 0.0;
-    }
-    return n > 0 ? 100.0 * with / static_cast<double>(n) : 0.0;
+    for (const std::size_t i : set)
+      with += models.of(i) != nullptr && models.of(i)->artifacts > 0 ? 1.0 : 0.0;
+    const auto n = static_cast<double>(models.judged(set));
+    return n > 0.0 ? 100.0 * with / n : kNone;
   };
-  std::uint64_t n_all = 0, n_best = 0, n_candidates = 0;
-  const double all = share(selected.all, n_all), best = share(selected.best, n_best),
-               candidates = share(selected.candidates, n_candidates);
-  const char* quantity = "models with a resonance that the truth does not have";
-  out.add(out.row("Section 4", name + ", all", quantity, "%", all, n_all));
-  out.add(out.row("Section 4", name + ", best by d1", quantity, "%", best, n_best));
-  if (n_candidates == 0) return;
-  std::uint64_t n_accepted = 0;
-  const double accepted = share(selected.accepted, n_accepted);
-  out.add(out.row("Section 4", name + ", norm below the limit", quantity, "%", accepted, n_accepted));
-  TableRow row = out.row("Section 4", name + ", candidates", quantity, "%", candidates, n_candidates);
-  if (candidates == 0.0 && best > 0.0) {
-    row.verdict = std::isnan(row.published) ? "" : "exact";
-    out.add(std::move(row));
-    return;
-  }
-  out.add_claim(std::move(row), candidates < best,
-                best == 0.0 ? "the best by d1 have none either: nothing to tell apart"
-                            : "the norm's limit removes " +
-                                  significant(100.0 * (1.0 - candidates / best), 3) + " % of them");
+  const auto row_of = [&](const char* which, const std::vector<std::size_t>& set) {
+    TableRow row = out.row("Section 4", name + which, "models with a resonance that the truth does not have",
+                           "%", share(set), models.judged(set));
+    row.why = models.left_out(set);
+    return row;
+  };
+  out.add(row_of(", all", selected.all));
+  out.add(row_of(", best by d1", selected.best));
+  out.add(row_of(", norm below the limit", selected.accepted));
+  TableRow row = row_of(", candidates", selected.candidates);
+  const double best = share(selected.best), candidates = row.value;
+  if (selected.candidates.empty()) return out.add_claim(std::move(row), false, kNoModel);
+  out.add_claim(std::move(row), best > 0.0 && candidates < 0.5 * best,
+                !(best > 0.0) ? "the best by d1 have none either: nothing to tell apart"
+                              : "among the best by d1 " + significant(best, 3) +
+                                    " % have one; alike: at most half as many among the candidates");
 }
 
-void add_selection(const ModelTable& table, const Selection& selection, const Selected& selected,
+void add_pasts(const ModelTable& table, const Selected& selected, const std::string& name,
+               const CellTables& out) {
+  constexpr double kLow = 250.0, kHigh = 700.0;  // H 4.3
+  std::vector<double> past;
+  for (const std::size_t i : selected.candidates) past.push_back(table.models[i].past);
+  double longest = 0.0;
+  for (const ModelRow& model : table.models) longest = std::max(longest, static_cast<double>(model.past));
+  const double low = past.empty() ? kNone : *std::min_element(past.begin(), past.end()),
+               high = past.empty() ? kNone : *std::max_element(past.begin(), past.end());
+  const auto add = [&](const char* quantity, double value) {
+    TableRow row = out.row("Section 4", name, quantity, "", value, past.size());
+    if (longest < kHigh && !std::isnan(row.published)) {
+      row.why = "no verdict: p ends at " + significant(longest, 4) + " here";
+      return out.add(std::move(row));
+    }
+    out.add_claim(std::move(row), low >= kLow && high <= kHigh,
+                  past.empty() ? kNoModel : "p of the candidates lies between 250 and 700 in print");
+  };
+  add("smallest p of the candidates", low);
+  add("largest p of the candidates", high);
+}
+
+void add_selection(const JudgedModels& models, const Selection& selection, const Selected& selected,
                    const CellTables& out) {
   const std::string name = "n = " + std::to_string(selection.order);
   out.add(out.row("Section 4", name, "limit of the norm", "", selected.limit, selected.all.size()));
@@ -145,88 +167,102 @@ void add_selection(const ModelTable& table, const Selection& selection, const Se
   };
   count("models with norm below the limit", selected.accepted);
   count("candidates", selected.candidates);
-  add_artifacts(table, selected, name, out);
+  add_artifacts(models, selected, name, out);
+  add_pasts(models.table, selected, name, out);
   if (selected.candidates.empty()) return;
-  std::vector<double> past;
-  for (const std::size_t i : selected.candidates) past.push_back(table.models[i].past);
-  const EmpiricalCdf cdf(past);
-  const double low = cdf.quantile(0.0), high = cdf.quantile(1.0);
-  const bool inside = low >= 250.0 && high <= 700.0;
-  out.add_claim(out.row("Section 4", name, "smallest p of the candidates", "", low, past.size()), inside,
-                "p of the candidates lies between 250 and 700 in print");
-  out.add_claim(out.row("Section 4", name, "largest p of the candidates", "", high, past.size()), inside,
-                "p of the candidates lies between 250 and 700 in print");
   out.add(out.row("Section 4", name, "median d1 of the candidates", "",
-                  table.models[selected.candidates[selected.candidates.size() / 2]].agreement, past.size()));
+                  models.table.models[selected.candidates[selected.candidates.size() / 2]].agreement,
+                  selected.candidates.size()));
 }
 
-void add_mode(const ModelTable& table, const Selected& selected, std::size_t mode, const CellTables& out) {
+/// Mean and standard deviation over the candidates of a quantity that print gives with both.
+void add_moments(const Selected& selected, const std::vector<double>& values, const std::string& name,
+                 const char* quantity, const char* deviation, const char* unit, const CellTables& out) {
+  const Moments m = moments(values);
+  TableRow mean = out.row("Section 5.1", name, quantity, unit, values.empty() ? kNone : m.mean, m.n);
+  TableRow spread = out.row("Section 5.1", name, deviation, unit, m.n > 1 ? m.deviation : kNone, m.n);
+  if (m.n < 2) {
+    const std::string why = selected.candidates.empty() ? kNoModel
+                            : m.n == 0                  ? "no candidate has the mode"
+                                                        : "one candidate alone has the mode: no spread";
+    out.add_claim(std::move(mean), false, why);
+    return out.add_claim(std::move(spread), false, why);
+  }
+  mean.low = m.mean - kSpread * m.deviation;
+  mean.high = m.mean + kSpread * m.deviation;
+  mean.why = kOneRecord;
+  judge_by_order(mean, "the candidates' spread does not hold the printed value, which the truth has");
+  out.add(std::move(mean));
+  const double ratio = spread.published > 0.0 ? std::log10(m.deviation / spread.published) : kNone;
+  out.add_claim(std::move(spread), std::abs(ratio) <= 0.5,
+                "one flight test: no interval; alike: within half a decade");
+}
+
+void add_mode(const JudgedModels& models, const Selected& selected, std::size_t mode, const CellTables& out) {
   std::vector<double> periods, dampings;
-  std::uint64_t analysed = 0;
   for (const std::size_t i : selected.candidates) {
-    if (table.models[i].analysis < 0) continue;
-    ++analysed;
-    const ModelAnalysisRow& analysis = table.analyses[static_cast<std::size_t>(table.models[i].analysis)];
-    if (!(analysis.period_s[mode] > 0.0)) continue;
-    periods.push_back(analysis.period_s[mode]);
-    dampings.push_back(analysis.damping[mode]);
+    const ModelAnalysis* analysis = models.of(i);
+    if (analysis == nullptr || !(analysis->period_s[mode] > 0.0)) continue;
+    periods.push_back(analysis->period_s[mode]);
+    dampings.push_back(analysis->damping[mode]);
   }
   const std::string name = kTrackedModes[mode].name;
-  out.add(out.row(
+  const auto judged = models.judged(selected.candidates);
+  TableRow have = out.row(
       "Section 5.1", name, "candidates that have the mode", "%",
-      analysed > 0 ? 100.0 * static_cast<double>(periods.size()) / static_cast<double>(analysed) : 0.0,
-      analysed));
-  if (periods.empty()) return;
-  const auto add = [&](const std::vector<double>& values, const char* quantity, const char* deviation,
-                       const char* unit) {
-    const Moments m = moments(values);
-    TableRow mean = out.row("Section 5.1", name, quantity, unit, m.mean, m.n);
-    if (m.n > 1) {
-      mean.low = m.mean - kSpread * m.deviation;
-      mean.high = m.mean + kSpread * m.deviation;
-      mean.why = kOneRecord;
-    }
-    judge_by_order(mean, "the candidates' spread does not hold the printed value, which the truth has");
-    out.add(std::move(mean));
-    TableRow spread = out.row("Section 5.1", name, deviation, unit, m.deviation, m.n);
-    const double ratio = spread.published > 0.0 ? m.deviation / spread.published : 0.0;
-    out.add_claim(std::move(spread), ratio > 1.0 / 3.0 && ratio < 3.0, "one flight test: no interval");
-  };
-  add(periods, "T_P", "standard deviation of T_P", "s");
-  add(dampings, "D", "standard deviation of D", "");
+      judged > 0 ? 100.0 * static_cast<double>(periods.size()) / static_cast<double>(judged) : kNone, judged);
+  have.why = models.left_out(selected.candidates);
+  out.add(std::move(have));
+  add_moments(selected, periods, name, "T_P", "standard deviation of T_P", "s", out);
+  add_moments(selected, dampings, name, "D", "standard deviation of D", "", out);
 }
 
-void add_levels(const ModelTable& table, const Selected& selected, const CellTables& out) {
+/// The value that most candidates have, and the share that has it.
+struct Majority {
+  std::size_t value = 0;
+  std::string share;
+};
+
+Majority majority(const std::array<std::uint64_t, 4>& counts, std::uint64_t n) {
+  const auto most = std::max_element(counts.begin(), counts.end());
+  return {
+      static_cast<std::size_t>(most - counts.begin()),
+      significant(100.0 * static_cast<double>(*most) / static_cast<double>(n), 3) + " % of the candidates"};
+}
+
+void add_levels(const JudgedModels& models, const Selected& selected, const CellTables& out) {
   for (std::size_t k = 0; k < kJudged.size(); ++k) {
     std::array<std::uint64_t, 4> level{}, approval{};
     std::uint64_t n = 0;
+    double diverging = 0.0;
     for (const std::size_t i : selected.candidates) {
-      if (table.models[i].analysis < 0) continue;
-      const ModelAnalysisRow& analysis = table.analyses[static_cast<std::size_t>(table.models[i].analysis)];
-      if (analysis.level[k] == 0) continue;
+      const ModelAnalysis* analysis = models.of(i);
+      if (analysis == nullptr || analysis->level[k] == 0) continue;
       ++n;
-      ++level[static_cast<std::size_t>(analysis.level[k])];
-      ++approval[static_cast<std::size_t>(analysis.approval[k])];
+      ++level[static_cast<std::size_t>(analysis->level[k])];
+      ++approval[static_cast<std::size_t>(analysis->approval[k])];
+      diverging += analysis->diverging[k] ? 1.0 : 0.0;
     }
-    if (n == 0) continue;
-    const auto most = [](const std::array<std::uint64_t, 4>& counts) {
-      return std::max_element(counts.begin(), counts.end()) - counts.begin();
-    };
-    const auto percent = [&](std::uint64_t count) {
-      return significant(100.0 * static_cast<double>(count) / static_cast<double>(n), 3) +
-             " % of the candidates";
-    };
-    TableRow row = out.row("Section 5.2", kJudged[k].name, "ADS-33 level (boundary unverified)", "",
-                           static_cast<double>(most(level)), n);
-    row.why = percent(level[static_cast<std::size_t>(most(level))]);
-    judge_exact(row, 1.0, "campaigns/candidates/README.md");
+    TableRow row =
+        out.row("Section 5.2", kJudged[k].name, "ADS-33 level (boundary unverified)", "", kNone, n);
+    TableRow pilots = out.row("Section 5.1", kJudged[k].name,
+                              "CS-27 pilots (0: no approval; boundary unverified)", "", kNone, n);
+    if (n == 0) {
+      out.add_claim(std::move(row), false, kNoModel);
+      out.add_claim(std::move(pilots), false, kNoModel);
+      continue;
+    }
+    const Majority ads = majority(level, n), cs = majority(approval, n);
+    row.value = static_cast<double>(ads.value);
+    row.why = ads.share;
+    judge_category(row, "campaigns/candidates/README.md");
     out.add(std::move(row));
-    TableRow pilots =
-        out.row("Section 5.1", kJudged[k].name, "CS-27 pilots (0: no approval; boundary unverified)", "",
-                static_cast<double>(most(approval) == 3 ? 0 : most(approval)), n);
-    pilots.why = percent(approval[static_cast<std::size_t>(most(approval))]);
-    judge_exact(pilots, 1.0, "campaigns/candidates/README.md");
+    pilots.value = cs.value == 3 ? 0.0 : static_cast<double>(cs.value);
+    pilots.why = cs.share;
+    judge_category(pilots, "campaigns/candidates/README.md");
     out.add(std::move(pilots));
+    out.add(out.row("Section 5.2", kJudged[k].name, "candidates whose response diverges without oscillating",
+                    "%", 100.0 * diverging / static_cast<double>(n), n));
   }
 }
 
@@ -243,6 +279,8 @@ Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& 
     if (!decoded) return fail(decoded.error());
     const ModelTable table = read_models(cell, rows);
     if (table.models.empty()) continue;
+    const auto judged = judge_models(table, decoded->truth);
+    if (!judged) return fail(judged.error());
     const CellTables cell_tables(
         spec.cells.size() == 1 ? "" : ", " + spec.cells[cell].name,
         compared_with_print(spec, cell) ? *published : std::vector<PublishedFigure>{}, out);
@@ -253,11 +291,11 @@ Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& 
     for (const Selection& selection : decoded->selections) {
       const CellTables own_tables = cell_tables.with(", " + selection.limit_text());
       const Selected selected = select(table, selection);
-      add_selection(table, selection, selected, own_tables);
-      if (selection.order != highest || selected.candidates.empty()) continue;  // H analyses n = 18
+      add_selection(*judged, selection, selected, own_tables);
+      if (selection.order != highest) continue;  // H analyses n = 18
       for (std::size_t mode = 0; mode < kTrackedModes.size(); ++mode)
-        add_mode(table, selected, mode, own_tables);
-      add_levels(table, selected, own_tables);
+        add_mode(*judged, selected, mode, own_tables);
+      add_levels(*judged, selected, own_tables);
     }
   }
   // Table by table, each in the order of cells and selections.

@@ -15,8 +15,8 @@ namespace {
 /// Collects the arrays of a row, model by model.
 class BlockResults {
  public:
-  BlockResults(const CandidatesSpec& spec, std::span<const Maneuver> multisteps, std::span<const Mode> truth)
-      : spec_(spec), multisteps_(multisteps), truth_(truth) {}
+  BlockResults(const CandidatesSpec& spec, std::span<const Maneuver> multisteps)
+      : spec_(spec), multisteps_(multisteps) {}
 
   void add(const FamilyMember& member, const Result<PbsidModel>& model) {
     past_.push_back(member.past);
@@ -28,10 +28,11 @@ class BlockResults {
     norm_.push_back(0.0);
     roll_agreement_.push_back(0.0);
     roll_rms_.push_back(0.0);
-    if (lambda_past_ != member.past && model) {
+    if (lambda_past_ != member.past) {
       lambda_past_ = member.past;
-      lambda_.push_back(model->lambda);
+      lambda_.push_back(0.0);
     }
+    if (model) lambda_.back() = model->lambda;
     if (!model) return failed(ModelState::not_identified, member, model.error());
     norm_.back() = model->predictor_norm;
     const DiscreteModel discrete{model->a, model->b, model->c};
@@ -62,8 +63,7 @@ class BlockResults {
     };
     array(kPast, past_), array(kFuture, future_), array(kOrder, order_), array(kState, state_);
     array(kAgreement, agreement_), array(kRms, rms_), array(kNorm, norm_), array(kLambda, lambda_);
-    array(kAnalysed, analysed_), array(kPeriod, period_), array(kDamping, damping_), array(kLevel, level_);
-    array(kApproval, approval_), array(kArtifacts, artifacts_), array(kMagnitude, magnitude_);
+    array(kAnalysed, analysed_), array(kMagnitude, magnitude_);
     array(kRollAgreement, roll_agreement_), array(kRollRms, roll_rms_);
     array(kEigenvalues, eigenvalues_), array(kModalB, modal_b_), array(kModalC, modal_c_);
   }
@@ -83,18 +83,14 @@ class BlockResults {
   }
 
   void add_analysis(const DiscreteModel& discrete, const ModalModel& modal, const FamilyMember& member) {
-    const auto analysis = analyse(discrete, spec_.truth.rate_hz, truth_);
-    if (!analysis) {
+    const auto continuous = continuous_model(discrete, 1.0 / spec_.truth.rate_hz, Continuation::zoh);
+    if (!continuous) {
       ++not_continuous_;
-      return note(member, analysis.error());
+      return note(member, continuous.error());
     }
     analysed_.push_back(static_cast<double>(past_.size() - 1));
-    period_.insert(period_.end(), analysis->period_s.begin(), analysis->period_s.end());
-    damping_.insert(damping_.end(), analysis->damping.begin(), analysis->damping.end());
-    level_.insert(level_.end(), analysis->level.begin(), analysis->level.end());
-    approval_.insert(approval_.end(), analysis->approval.begin(), analysis->approval.end());
-    artifacts_.push_back(analysis->artifacts);
-    magnitude_.insert(magnitude_.end(), analysis->magnitude_db.begin(), analysis->magnitude_db.end());
+    const std::vector<double> magnitude_db = roll_magnitude_db(*continuous, study_frequencies());
+    magnitude_.insert(magnitude_.end(), magnitude_db.begin(), magnitude_db.end());
     add_model(modal);
   }
 
@@ -112,9 +108,8 @@ class BlockResults {
 
   const CandidatesSpec& spec_;
   std::span<const Maneuver> multisteps_;
-  std::span<const Mode> truth_;
   std::vector<double> past_, future_, order_, state_, agreement_, rms_, norm_, lambda_;
-  std::vector<double> analysed_, period_, damping_, level_, approval_, artifacts_, magnitude_;
+  std::vector<double> analysed_, magnitude_;
   std::vector<double> roll_agreement_, roll_rms_, eigenvalues_, modal_b_, modal_c_;
   int lambda_past_ = 0, not_identified_ = 0, not_validated_ = 0, not_continuous_ = 0;
   std::string first_failure_;
@@ -122,10 +117,7 @@ class BlockResults {
 
 class CandidatesTrials final : public PreparedCell {
  public:
-  CandidatesTrials(CandidatesSpec spec, FlownTest flown)
-      : spec_(std::move(spec)),
-        flown_(std::move(flown)),
-        truth_(truth_modes(spec_.truth.model, spec_.truth.rate_hz)) {}
+  CandidatesTrials(CandidatesSpec spec, FlownTest flown) : spec_(std::move(spec)), flown_(std::move(flown)) {}
 
   TrialRow run(std::uint64_t repetition) const override {
     TrialRow row;
@@ -144,7 +136,7 @@ class CandidatesTrials final : public PreparedCell {
     plan.regularization = identification.regularization;
     plan.lambda_for_each_past = identification.lambda_for_each_past;
     plan.final_regression = identification.final_regression;
-    BlockResults results(spec_, flown_.multisteps, truth_);
+    BlockResults results(spec_, flown_.multisteps);
     const Status status = identify_family(
         flown_.sweeps, plan,
         [&](const FamilyMember& member, const Result<PbsidModel>& model) { results.add(member, model); });
@@ -160,7 +152,6 @@ class CandidatesTrials final : public PreparedCell {
  private:
   CandidatesSpec spec_;
   FlownTest flown_;
-  std::vector<Mode> truth_;
 };
 
 Result<std::unique_ptr<PreparedCell>> prepare(const CampaignSpec& spec, std::uint32_t cell) {

@@ -4,6 +4,7 @@
 
 #include "campaigns/base/verdict.h"
 #include "campaigns/hidden_effect/bars.h"
+#include "campaigns/hidden_effect/figures.h"
 #include "campaigns/hidden_effect/hidden_results.h"
 #include "core/stats/empirical.h"
 #include "core/stats/intervals.h"
@@ -152,6 +153,6 @@ Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& 
 
 }  // namespace
 
-const SummaryStudy kSummaryStudy{"hidden_effect", &tables};
+const SummaryStudy kSummaryStudy{"hidden_effect", &tables, &figures};
 
 }  // namespace fatmc::hidden_effect

@@ -9,6 +9,8 @@
 #include "coordinator/cli/command.h"
 #include "coordinator/cli/identify_record.h"
 #include "coordinator/cli/output_path.h"
+#include "coordinator/cli/regularization_option.h"
+#include "coordinator/cli/state_space_file.h"
 #include "core/base/text.h"
 #include "core/record/column_file.h"
 
@@ -89,31 +91,6 @@ std::string model_json(const IdentifyArguments& arguments, const IdentifiedRecor
   return json.dump(2) + "\n";
 }
 
-std::string toml_matrix(const char* name, const Eigen::MatrixXd& matrix) {
-  std::string out = std::string(name) + " = [\n";
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    std::vector<std::string> row;
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(shortest(matrix(i, j)));
-    out += "  [" + join(row) + "],\n";
-  }
-  return out + "]\n";
-}
-
-std::string toml_names(const char* name, const std::vector<std::string>& names) {
-  std::vector<std::string> quoted;
-  for (const std::string& text : names) quoted.push_back(Json(text).dump());
-  return std::string(name) + " = [" + join(quoted) + "]\n";
-}
-
-std::string model_toml(const IdentifiedRecords& result) {
-  return "# x[n+1] = A x[n] + B u[n], y[n] = C x[n]; identified by fatmc identify, offsets of the records "
-         "removed.\n"
-         "kind = \"state_space\"\nrate_hz = " +
-         shortest(result.rate_hz) + "\n" + toml_names("inputs", result.inputs) +
-         toml_names("outputs", result.outputs) + toml_matrix("A", result.model.a) +
-         toml_matrix("B", result.model.b) + toml_matrix("C", result.model.c);
-}
-
 void print_modes(const IdentifiedRecords& result) {
   std::printf("  mode   frequency Hz   damping   period s   time constant s\n");
   const auto modal = modal_model({result.model.a, result.model.b, result.model.c});
@@ -190,21 +167,6 @@ void print_result(const IdentifyArguments& arguments, const IdentifiedRecords& r
               arguments.directory.c_str());
 }
 
-Status read_regularization(const std::string& text, RegularizationOptions& options) {
-  static const std::map<std::string, Regularization> kRules{
-      {"gcv", Regularization::gcv}, {"srgcv", Regularization::srgcv}, {"lcurve", Regularization::lcurve}};
-  if (const auto rule = kRules.find(text); rule != kRules.end()) {
-    options.rule = rule->second;
-    return {};
-  }
-  options.rule = Regularization::fixed;
-  if (!parse_double(text, options.lambda) || options.lambda < 0.0) {
-    return fail(Error{"", 0, "--regularization",
-                      "\"" + text + "\" is neither gcv, srgcv, lcurve nor a lambda of 0 or more"});
-  }
-  return {};
-}
-
 Exit run_identify(IdentifyArguments& arguments, const std::string& regularization) {
   if (Status status = read_regularization(regularization, arguments.pbsid.regularization); !status) {
     return report(status.error());
@@ -214,7 +176,10 @@ Exit run_identify(IdentifyArguments& arguments, const std::string& regularizatio
   if (!result) return report(result.error());
   std::filesystem::create_directories(arguments.directory);
   write_file_atomically(arguments.directory + "/model.json", model_json(arguments, *result));
-  write_file_atomically(arguments.directory + "/model.toml", model_toml(*result));
+  write_file_atomically(
+      arguments.directory + "/model.toml",
+      state_space_toml("identified by fatmc identify, offsets of the records removed", result->rate_hz,
+                       result->inputs, result->outputs, {result->model.a, result->model.b, result->model.c}));
   print_result(arguments, *result);
   return Exit::done;
 }
@@ -226,17 +191,7 @@ void add_identify_command(CLI::App& app, Exit& exit) {
   auto regularization = std::make_shared<std::string>("gcv");
   CLI::App* command =
       app.add_subcommand("identify", "State-space model of records by PBSIDopt, open or closed loop.");
-  command
-      ->add_option("record", arguments->records,
-                   "RECORD.csv, its RECORD.toml beside it; several: one model of all")
-      ->required();
-  command->add_option("--validate", arguments->validation,
-                      "records that the model is to repeat, not used to identify it");
-  command
-      ->add_option("--hold-back", arguments->hold_back, "share at the end of each record kept for validation")
-      ->check(CLI::Range(0.0, 0.9))
-      ->capture_default_str();
-  command->add_option("--meta", arguments->meta, "TOML of all records, instead of the one beside each");
+  add_record_options(*command, *arguments);
   command->add_option("--past", arguments->pbsid.past, "past window p in samples: until A_K^p is negligible")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
@@ -246,10 +201,7 @@ void add_identify_command(CLI::App& app, Exit& exit) {
   command->add_option("--order", arguments->pbsid.order, "number of states n")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command
-      ->add_option("--regularization", *regularization,
-                   "gcv (no free constant), srgcv (strong robust, smooths more), lcurve, or lambda itself")
-      ->capture_default_str();
+  command->add_option("--regularization", *regularization, kRegularizationHelp)->capture_default_str();
   command
       ->add_option("--final", arguments->pbsid.final_regression,
                    "paper: A, B, C by regression, K by the Riccati equation, predictor stable; residual: A, "
@@ -262,15 +214,6 @@ void add_identify_command(CLI::App& app, Exit& exit) {
       ->transform(CLI::CheckedTransformer(std::map<std::string, Continuation>{
           {"zoh", Continuation::zoh}, {"bilinear", Continuation::bilinear}}))
       ->default_str("zoh");
-  command
-      ->add_option("--offset", arguments->offset,
-                   "what is taken off each channel of a record: mean, first sample or none")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, OffsetRemoval>{
-          {"mean", OffsetRemoval::mean}, {"first", OffsetRemoval::first}, {"none", OffsetRemoval::none}}))
-      ->default_str("mean");
-  command->add_option("--decimate", arguments->decimation, "low pass without delay, then every N-th sample")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
   command->add_option("-o,--output", arguments->directory, "directory for model.json and model.toml")
       ->required();
   command->footer(

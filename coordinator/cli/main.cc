@@ -1,5 +1,5 @@
 // fatmc: command line.
-#include "coordinator/cli/command.h"
+#include "coordinator/cli/model_commands.h"
 
 namespace fatmc::cli {
 namespace {
@@ -35,6 +35,8 @@ int run(int argc, char** argv) {
   add_stability_command(app, exit);
   add_monitor_command(app, exit);
   add_identify_command(app, exit);
+  add_select_command(app, exit);
+  add_export_command(app, exit);
   return run_application(app, exit, argc, argv);
 }
 

@@ -88,6 +88,12 @@ struct Spanned {
     if (vertical) extent.add(0.0);
   }
   void operator()(const Rule&) const {}
+  void operator()(const Cells& m) const {
+    for (const double place : vertical ? m.y : m.x) {
+      extent.add(place - 0.5);
+      extent.add(place + 0.5);
+    }
+  }
 };
 
 }  // namespace
@@ -135,11 +141,16 @@ AxisScale::AxisScale(const Axis& axis, const Range& range, double first_px, doub
     const double decades = std::log10(range.high / range.low);
     if (decades >= 0.5 && decades <= 4.0) fine_grid_ = multiples(range, {2, 3, 4, 5, 6, 7, 8, 9});
   }
-  if (axis.ticks.empty()) return;
-  ticks_.clear();
-  for (const double tick : axis.ticks) {
-    if (tick >= range.low && tick <= range.high) ticks_.push_back(tick);
+  const bool named = !axis.tick_labels.empty();
+  FATMC_CHECK(!named || axis.tick_labels.size() == axis.ticks.size(), "a label a tick");
+  if (!axis.ticks.empty()) ticks_.clear();
+  for (std::size_t k = 0; k < axis.ticks.size(); ++k) {
+    if (axis.ticks[k] < range.low || axis.ticks[k] > range.high) continue;
+    ticks_.push_back(axis.ticks[k]);
+    if (named) texts_.push_back(axis.tick_labels[k]);
   }
+  if (named) return;
+  for (const double tick : ticks_) texts_.push_back(tick_text(tick, ticks_));
 }
 
 double AxisScale::pixel(double value) const {

@@ -26,6 +26,8 @@ class AxisScale {
   /// The pixel, not finite where the value has no place on the axis.
   [[nodiscard]] double pixel(double value) const;
   [[nodiscard]] const std::vector<double>& ticks() const { return ticks_; }
+  /// One a tick: its number, or the axis' own label.
+  [[nodiscard]] const std::vector<std::string>& texts() const { return texts_; }
   /// Values of the fine grid between the ticks: 2 ... 9 times powers of ten on a logarithmic axis of one to
   /// four decades.
   [[nodiscard]] const std::vector<double>& fine_grid() const { return fine_grid_; }
@@ -36,6 +38,7 @@ class AxisScale {
   Range range_;
   double first_px_, last_px_;
   std::vector<double> ticks_, fine_grid_;
+  std::vector<std::string> texts_;
 };
 
 /// What the marks of a panel span along x (or y), or the axis' own range: never empty, with 5 % to spare

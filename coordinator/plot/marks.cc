@@ -151,6 +151,24 @@ struct Drawing {
     return "<path class=\"thin " + class_of("s", m.hue) + dash_class(m.dash) + "\" d=\"" +
            path_of({from, to}) + "\"/>\n";
   }
+  std::string operator()(const Cells& m) const {
+    FATMC_CHECK(m.x.size() == m.y.size() && m.x.size() == m.share.size(), "a share a place");
+    std::string squares, texts;
+    for (std::size_t k = 0; k < m.x.size(); ++k) {
+      const double left = x.pixel(m.x[k] - 0.5), right = x.pixel(m.x[k] + 0.5);
+      const double top = y.pixel(m.y[k] + 0.5), bottom = y.pixel(m.y[k] - 0.5);
+      if (!std::isfinite(left + right + top + bottom + m.share[k])) continue;
+      const double share = std::clamp(m.share[k], 0.0, 1.0);
+      squares += "<rect class=\"" + class_of("f", m.hue) + "\" opacity=\"" + fixed(0.08 + 0.62 * share, 2) +
+                 "\" x=\"" + px(limited(left)) + "\" y=\"" + px(limited(top)) + "\" width=\"" +
+                 px(limited(right) - limited(left)) + "\" height=\"" + px(limited(bottom) - limited(top)) +
+                 "\"/>\n";
+      if (share < 0.01) continue;
+      texts += "<text class=\"m c\" x=\"" + px(limited(0.5 * (left + right))) + "\" y=\"" +
+               px(limited(0.5 * (top + bottom)) + 3.5) + "\">" + fixed(100.0 * share, 0) + "</text>\n";
+    }
+    return squares + texts;
+  }
 
   /// `values`, with gaps where `others` have none to pair with.
   [[nodiscard]] std::vector<double> gapped(std::vector<double> values,
@@ -172,6 +190,7 @@ struct Sample {
   }
   std::string operator()(const Band& m) const { return box("band ", m.hue); }
   std::string operator()(const Bars& m) const { return box("bar ", m.hue); }
+  std::string operator()(const Cells& m) const { return box("bar ", m.hue); }
   std::string operator()(const Boxes& m) const { return box("bar ", m.hue); }
   std::string operator()(const Points& m) const {
     return "<circle class=\"" + (m.filled ? class_of("f", m.hue) : "ring " + class_of("s", m.hue)) +

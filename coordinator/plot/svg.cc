@@ -51,26 +51,51 @@ std::string grid(const AxisScale& x, const AxisScale& y, const Box& box) {
   return out;
 }
 
-std::string tick_texts(const AxisScale& x, const AxisScale& y, const Box& box) {
+/// Letters of UTF-8 text: bytes that do not continue one.
+double letters(const std::string& text) {
+  return static_cast<double>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+/// Room that the labels of an axis need beside it.
+double label_room(const Axis& axis) {
+  double longest = 0.0;
+  for (const std::string& label : axis.tick_labels) longest = std::max(longest, letters(label));
+  return kCharacter * longest + 8.0;
+}
+
+std::string upright(double x, double y, const std::string& text) {
+  return "<text class=\"e\" transform=\"translate(" + px(x) + " " + px(y) + ") rotate(-90)\">" +
+         escaped(text) + "</text>\n";
+}
+
+std::string tick_texts(const Panel& panel, const AxisScale& x, const AxisScale& y, const Box& box) {
   std::string out;
   double free_from =
       box.left - kLeft;  // texts of a crowded logarithmic axis are left out rather than overprinted
-  for (const double v : x.ticks()) {
-    const std::string text = tick_text(v, x.ticks());
+  for (std::size_t k = 0; k < x.ticks().size(); ++k) {
+    const double v = x.ticks()[k];
+    const std::string& text = x.texts()[k];
+    if (!panel.x.tick_labels.empty()) {
+      out += upright(x.pixel(v) + 4.0, box.bottom + 5.0, text);
+      continue;
+    }
     const double half = kCharacter * static_cast<double>(text.size()) / 2.0;
     if (x.pixel(v) - half < free_from) continue;
     out += text_at(x.pixel(v), box.bottom + 14.0, "m", text);
     free_from = x.pixel(v) + half + 4.0;
   }
-  for (const double v : y.ticks())
-    out += text_at(box.left - 5.0, y.pixel(v) + 4.0, "e", tick_text(v, y.ticks()));
+  for (std::size_t k = 0; k < y.ticks().size(); ++k)
+    out += text_at(box.left - 5.0, y.pixel(y.ticks()[k]) + 4.0, "e", y.texts()[k]);
   return out;
 }
 
 std::string panel_svg(const Panel& panel, double left, double top, double width, double height,
                       const std::string& clip) {
-  const Box box{left + kLeft, top + kTop, left + width - kRight,
-                top + height - kBottom - (panel.x.label.empty() ? 0.0 : kLabel)};
+  const bool named_x = !panel.x.tick_labels.empty(), named_y = !panel.y.tick_labels.empty();
+  const double below = named_x ? label_room(panel.x) : kBottom;
+  const Box box{left + (named_y ? label_room(panel.y) + kLabel : kLeft), top + kTop, left + width - kRight,
+                top + height - below - (panel.x.label.empty() ? 0.0 : kLabel)};
   FATMC_CHECK(box.right > box.left && box.bottom > box.top, "a panel larger than its axes");
   const AxisScale x(panel.x, axis_range(panel, false), box.left, box.right),
       y(panel.y, axis_range(panel, true), box.bottom, box.top);
@@ -79,22 +104,16 @@ std::string panel_svg(const Panel& panel, double left, double top, double width,
   std::string out = "<clipPath id=\"" + clip + "\"><rect " + rectangle + "</clipPath>\n" + grid(x, y, box);
   out += "<g clip-path=\"url(#" + clip + ")\">\n";
   for (const Mark& mark : panel.marks) out += mark_svg(mark, x, y);
-  out += "</g>\n<rect class=\"frame\" " + rectangle + "\n" + tick_texts(x, y, box);
+  out += "</g>\n<rect class=\"frame\" " + rectangle + "\n" + tick_texts(panel, x, y, box);
   if (!panel.title.empty()) out += text_at(box.left, top + kTop - 6.0, "b", panel.title);
   if (!panel.x.label.empty())
-    out += text_at((box.left + box.right) / 2.0, box.bottom + 30.0, "m n", panel.x.label);
+    out += text_at((box.left + box.right) / 2.0, box.bottom + below + 10.0, "m n", panel.x.label);
   if (!panel.y.label.empty()) {
     const double middle = (box.top + box.bottom) / 2.0;
     out += "<text class=\"m n\" transform=\"translate(" + px(left + 14.0) + " " + px(middle) +
            ") rotate(-90)\">" + escaped(panel.y.label) + "</text>\n";
   }
   return out;
-}
-
-/// Letters of UTF-8 text: bytes that do not continue one.
-double letters(const std::string& text) {
-  return static_cast<double>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
 /// The first mark of each name, in the order of the panels; rows as wide as the figure. Sets `height`.
@@ -183,7 +202,8 @@ std::string escaped(const std::string& text) {
 std::string svg_style() {
   std::string out =
       "text{font:12px system-ui,'DejaVu Sans',sans-serif;fill:#202124}\n"
-      ".h{font-size:14px;font-weight:600}.b{font-weight:600}.m{text-anchor:middle}.e{text-anchor:end}.n{fill:"
+      ".h{font-size:14px;font-weight:600}.b{font-weight:600}.m{text-anchor:middle}.c{font-size:10px}.e{text-"
+      "anchor:end}.n{fill:"
       "#5f6368}\n"
       ".ground{fill:#ffffff}.frame{fill:none;stroke:#80868b}.grid{fill:none;stroke:#dadce0}.fine{fill:none;"
       "stroke:#eeeff1}\n"

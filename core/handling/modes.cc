@@ -77,9 +77,11 @@ Result<std::vector<ModeShare>> mode_shares(const ContinuousModel& model, Eigen::
     if (s.imag() < 0.0) continue;
     const double decay = std::max(std::abs(s.real()), std::numeric_limits<double>::min());
     out.push_back({{s}, std::abs(found->residues(i)) / decay, 0.0});
-    largest = std::max(largest, out.back().peak);
+    if (out.back().mode.oscillatory()) largest = std::max(largest, out.back().peak);
   }
-  for (ModeShare& mode : out) mode.share = largest > 0.0 ? mode.peak / largest : 0.0;
+  for (ModeShare& mode : out) {
+    mode.share = largest > 0.0 ? mode.peak / largest : (mode.peak > 0.0 ? 1.0 : 0.0);
+  }
   std::stable_sort(out.begin(), out.end(), [](const ModeShare& one, const ModeShare& other) {
     return std::abs(one.mode.s) < std::abs(other.mode.s);
   });

@@ -36,8 +36,9 @@ std::optional<Mode> nearest_mode(std::span<const Mode> modes, const Mode& wanted
 /// A mode as it shows in one element of the transfer matrix.
 struct ModeShare {
   Mode mode;
-  double peak = 0.0;   ///< |residue| / |Re s|, that pole's own height on the imaginary axis
-  double share = 0.0;  ///< of the largest such peak among the modes
+  double peak = 0.0;  ///< |residue| / |Re s|, that pole's own height on the imaginary axis
+  /// Of the largest such peak among the oscillatory modes; a near-integrator's would hide them all. 1 where none oscillates.
+  double share = 0.0;
 };
 
 /// Poles that zeros cancel have a small share: the reduction to a single-loop transfer function of H 5.2.

@@ -111,6 +111,41 @@ TEST(Marks, ThinManyPointsWithoutLosingAPeak) {
   EXPECT_THAT(svg, HasSubstr("L51.2 0L"));
 }
 
+TEST(Marks, DrawCellsAsDeepAsTheirSharesWithTheFiguresThatAreVisible) {
+  Panel panel;
+  panel.marks = {Cells{"right", {0.0, 1.0, 2.0}, {0.0, 0.0, 1.0}, {1.0, 0.25, 0.004}, Hue::green}};
+  const Range across = axis_range(panel, false);
+  EXPECT_EQ(across.low, -0.5);
+  EXPECT_EQ(across.high, 2.5);
+  panel.x.range = across;
+  panel.y.range = Range{-0.5, 1.5};
+  const AxisScale x(panel.x, *panel.x.range, 0.0, 300.0), y(panel.y, *panel.y.range, 200.0, 0.0);
+  const std::string svg = mark_svg(panel.marks[0], x, y);
+  EXPECT_EQ(count(svg, "<rect"), 3);
+  EXPECT_THAT(svg, HasSubstr("opacity=\"0.70\" x=\"0\" y=\"100\" width=\"100\" height=\"100\""));
+  EXPECT_THAT(svg, HasSubstr(">100</text>"));
+  EXPECT_THAT(svg, HasSubstr(">25</text>"));
+  EXPECT_EQ(count(svg, "<text"), 2) << "a share below 1 % has its square alone";
+}
+
+TEST(Svg, WritesNamesInsteadOfNumbersAndMakesRoomForThem) {
+  Figure figure;
+  figure.panel_width = 400.0;
+  figure.panel_height = 300.0;
+  figure.panels.emplace_back();
+  Panel& panel = figure.panels.front();
+  panel.x = {"answered", Scale::linear, Range{-0.5, 1.5}, {0.0, 1.0}, {"delay", "a < b"}};
+  panel.y = {"hidden", Scale::linear, Range{-0.5, 0.5}, {0.0}, {"a very long name of an effect"}};
+  panel.marks = {Cells{"", {0.0}, {0.0}, {1.0}}};
+  const std::string svg = svg_of(figure);
+  for (const char* name : {">delay</text>", ">a &lt; b</text>", ">a very long name of an effect</text>"})
+    EXPECT_EQ(count(svg, name), 1) << name;
+  EXPECT_EQ(count(svg, "rotate(-90)"), 3) << "both names along x, and the label of y";
+  const std::size_t frame = svg.find("class=\"frame\" x=\"");
+  ASSERT_NE(frame, std::string::npos);
+  EXPECT_GT(std::stod(svg.substr(frame + 17)), 150.0) << "29 letters stand left of the frame";
+}
+
 TEST(PhaseCurve, RunsToTheEdgeAndComesBackOnTheOtherSide) {
   const std::vector<double> phase = unwrapped({90.0, 170.0, -170.0, -90.0, 100.0});
   EXPECT_THAT(phase, ElementsAre(90.0, 170.0, 190.0, 270.0, 100.0));

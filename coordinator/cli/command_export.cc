@@ -1,0 +1,112 @@
+// fatmc export: a model of the candidates study as a MODEL file.
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "campaigns/base/prepared_trials.h"
+#include "campaigns/candidates/candidates_spec.h"
+#include "campaigns/candidates/model_table.h"
+#include "coordinator/cli/database_use.h"
+#include "coordinator/cli/model_commands.h"
+#include "coordinator/cli/output_path.h"
+#include "coordinator/cli/state_space_file.h"
+#include "coordinator/store/campaign_store.h"
+#include "core/base/text.h"
+#include "core/record/column_file.h"
+
+namespace fatmc::cli {
+namespace {
+
+using candidates::CandidatesSpec;
+using candidates::ModelRow;
+using candidates::ModelTable;
+
+struct ExportOptions {
+  std::string database, cell, output;
+  std::vector<int> model;  ///< p, f, n
+};
+
+Result<std::uint32_t> cell_of(const CampaignSpec& spec, const std::string& name) {
+  if (name.empty()) return std::uint32_t{0};
+  std::vector<std::string> names;
+  for (std::uint32_t i = 0; i < spec.cells.size(); ++i) {
+    if (spec.cells[i].name == name) return i;
+    names.push_back("\"" + spec.cells[i].name + "\"");
+  }
+  return fail(Error{"", 0, "--cell", "there is no \"" + name + "\", take one of " + join(names)});
+}
+
+/// The model asked for, or the best candidate of the last selection that has one.
+Result<std::size_t> chosen_model(const ModelTable& table, const CandidatesSpec& spec,
+                                 const std::vector<int>& wanted) {
+  if (wanted.empty()) {
+    for (auto selection = spec.selections.rbegin(); selection != spec.selections.rend(); ++selection) {
+      for (const std::size_t i : candidates::select(table, *selection).candidates) {
+        if (table.analysis_of(i) != nullptr) return i;
+      }
+    }
+    return fail("no selection of the study has a candidate, name a model by --model P,F,N");
+  }
+  for (std::size_t i = 0; i < table.models.size(); ++i) {
+    const ModelRow& model = table.models[i];
+    if (model.past != wanted[0] || model.future != wanted[1] || model.order != wanted[2]) continue;
+    if (table.analysis_of(i) != nullptr) return i;
+    return fail(
+        Error{"", 0, "--model",
+              "is not kept: models of the orders that are selected from are, where they were identified, "
+              "validated and have a continuous counterpart"});
+  }
+  return fail(Error{"", 0, "--model", "is not among the models of the database"});
+}
+
+Exit run_export(const ExportOptions& options) {
+  if (Status status = check_output_file(options.output); !status) return report(status.error());
+  const auto reader = CampaignReader::open(options.database);
+  if (!reader) return report(reader.error());
+  if (reader->spec().study != "candidates") {
+    return report(
+        Error{options.database, 0, "study",
+              "is \"" + reader->spec().study + "\", only a database of the study candidates holds models"});
+  }
+  const Result<std::uint32_t> cell = cell_of(reader->spec(), options.cell);
+  if (!cell) return report(cell.error());
+  const auto own = spec_of_cell(reader->spec(), *cell);
+  if (!own) return report(own.error());
+  const auto spec = candidates::decode_candidates(*own);
+  if (!spec) return report(spec.error());
+  const ModelTable table = candidates::read_models(*cell, reader->rows());
+  const Result<std::size_t> model = chosen_model(table, *spec, options.model);
+  if (!model) return report(model.error());
+  const ModelRow& row = table.models[*model];
+  const std::string name = "p " + std::to_string(row.past) + ", f " + std::to_string(row.future) + ", n " +
+                           std::to_string(row.order);
+  write_file_atomically(options.output,
+                        state_space_toml("candidate " + name + " of " + reader->spec().name + ", " +
+                                             reader->spec().cells[*cell].name + ", in modal coordinates",
+                                         spec->truth.rate_hz, candidates::input_names(),
+                                         candidates::output_names(), table.analysis_of(*model)->model.model));
+  std::printf("%s: %s, overall d1 %s, norm of A_K^p %s\n", options.output.c_str(), name.c_str(),
+              significant(row.agreement, 4).c_str(), significant(row.norm, 3).c_str());
+  return Exit::done;
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app, Exit& exit) {
+  auto options = std::make_shared<ExportOptions>();
+  CLI::App* command = app.add_subcommand("export", "a model of the candidates study as a MODEL file");
+  command->add_option("DB", options->database, "database of the study candidates")->required();
+  command
+      ->add_option(
+          "--model", options->model,
+          "P,F,N: past window, future window, order (default: the best candidate of the last selection)")
+      ->delimiter(',')
+      ->expected(3);
+  command->add_option("--cell", options->cell, "name of the cell (default: the first)");
+  command->add_option("-o,--output", options->output, "FILE.toml, kind state_space")->required();
+  command->footer("Example: fatmc export results/candidates.db --model 300,120,18 -o candidate.toml");
+  command->callback(
+      [options, &exit] { exit = use_database(options->database, [&] { return run_export(*options); }); });
+}
+
+}  // namespace fatmc::cli
