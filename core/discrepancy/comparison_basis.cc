@@ -150,12 +150,6 @@ std::vector<FeatureGroup> feature_groups(const FeatureLayout& layout) {
 void ComparisonBasis::complete() {
   atoms = law.whiten(layout, dictionary.differences);
   white_baseline = law.whiten(layout, baseline.colwise() - law.mean);
-  baseline_variance.resize(static_cast<Eigen::Index>(groups.size()));
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    baseline_variance[static_cast<Eigen::Index>(g)] =
-        white_baseline(groups[g].rows, Eigen::all).squaredNorm() /
-        static_cast<double>(groups[g].rows.size() * kPaired);
-  }
   resonances.clear();
   std::vector<Matrix> parts;
   Eigen::Index count = 0;

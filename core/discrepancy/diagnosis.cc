@@ -156,7 +156,12 @@ Diagnosis diagnose(const Comparison& comparison, const Comparison* holdout, cons
   }
 
   if (!best.fit.effects.empty()) out.effects = found_effects(selection, best);
-  out.verdict = !best.adequate ? Verdict::unknown : best.fit.effects.empty() ? Verdict::none : Verdict::named;
+  // What was detected and no effect accounts for is unknown, even where energy and groups alone would not show it.
+  if (best.fit.effects.empty()) {
+    out.verdict = detected ? Verdict::unknown : Verdict::none;
+  } else {
+    out.verdict = best.adequate ? Verdict::named : Verdict::unknown;
+  }
   if (out.verdict == Verdict::named && best.fit.effects.size() == 1) {
     const std::vector<Explanation> equals = equals_of(best, std::move(rivals));
     if (!equals.empty()) {

@@ -21,6 +21,15 @@ double mean_square(const Matrix& x, const std::vector<int>& rows, double divisor
   return x(rows, Eigen::all).squaredNorm() / (divisor * static_cast<double>(rows.size()));
 }
 
+/// Rows of a group that share a deviation. Those of lines stand in pairs of real and imaginary part, which are not alike: the
+/// attitude's real part, whose floor is its own, tells most of what the rate's imaginary part can be.
+std::vector<std::vector<int>> parts_of(const FeatureGroup& group) {
+  if (group.kind != FeatureKind::line) return {group.rows};
+  std::vector<std::vector<int>> out(2);
+  for (std::size_t i = 0; i < group.rows.size(); ++i) out[i % 2].push_back(group.rows[i]);
+  return out;
+}
+
 }  // namespace
 
 FittedLaw::FittedLaw(const Comparison& comparison)
@@ -72,15 +81,17 @@ void FittedLaw::measure_noise(std::size_t record, const Matrix& with, const Matr
   const Eigen::Index first = comparison_->first_row(record), group = comparison_->first_group(record);
   const Matrix difference = with - without;
   for (std::size_t g = 0; g < basis.groups.size(); ++g) {
-    const std::vector<int>& rows = basis.groups[g].rows;
-    const double a = mean_square(with, rows, flights - 1.0), b = mean_square(without, rows, flights - 1.0);
-    const double shown = std::min(1.0, basis.baseline_variance[static_cast<Eigen::Index>(g)]);
-    const double scale =
-        std::clamp(b > kLeastVariance && shown > kLeastVariance ? 1.0 - shown + shown * a / b : 1.0 + a - b,
-                   kLeastScale, kMostScale);
-    for (const int row : rows) deviation_[first + row] = std::sqrt(scale);
-    group_excess_[group + static_cast<Eigen::Index>(g)] =
-        difference(rows, Eigen::all).squaredNorm() / ((flights - 1.0) * flights * scale);
+    for (const std::vector<int>& rows : parts_of(basis.groups[g])) {
+      const double a = mean_square(with, rows, flights - 1.0), b = mean_square(without, rows, flights - 1.0);
+      const double shown = std::min(
+          1.0, mean_square(basis.white_baseline, rows, static_cast<double>(basis.white_baseline.cols())));
+      const double scale =
+          std::clamp(b > kLeastVariance && shown > kLeastVariance ? 1.0 - shown + shown * a / b : 1.0 + a - b,
+                     kLeastScale, kMostScale);
+      for (const int row : rows) deviation_[first + row] = std::sqrt(scale);
+      group_excess_[group + static_cast<Eigen::Index>(g)] +=
+          difference(rows, Eigen::all).squaredNorm() / ((flights - 1.0) * flights * scale);
+    }
   }
 }
 

@@ -1,7 +1,7 @@
 // What chance does to a record of the model with effects: the effects change the noise, too.
 //
 // From a few flights with the effects, set against flights of the model with the same noise (common random numbers), whose law
-// is known from many. For a group of features (comparison_basis.h) let v_a and v_b be the variances, in white coordinates, of
+// is known from many. For a group of features (comparison_basis.h; of lines, real and imaginary parts apart) let v_a and v_b be the variances, in white coordinates, of
 // flights with and without, and f the variance of all flights without that are kept: 1 but where a floor stands for what no
 // flight shows. Then the deviation of the group with the effects is W,
 //   W^2 = 1 - f + f v_a/v_b   (v_b > 0.02, else 1 + v_a - v_b),

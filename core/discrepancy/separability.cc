@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/discrepancy/candidate_scan.h"
+#include "core/discrepancy/effect_knowledge.h"
 #include "core/discrepancy/effect_size.h"
 #include "core/flight/aircraft.h"
 
@@ -23,14 +24,14 @@ bool moderate(const Effect& effect) {
   return false;
 }
 
-std::optional<Separation> separation_of(const Comparison& comparison, std::size_t atom) {
-  const Atom& own = comparison.dictionary().atoms[atom];
-  const Eigen::VectorXd change = comparison.atoms().col(static_cast<Eigen::Index>(atom));
-  Separation out{own.effect, change.squaredNorm(), {}, 90.0, change.squaredNorm()};
+/// `variant`: of the dictionary, or -1 where the effect is no candidate.
+std::optional<Separation> separation_of(const Comparison& comparison, const Effect& effect, int variant,
+                                        const Eigen::VectorXd& change) {
+  Separation out{effect, change.squaredNorm(), {}, 90.0, change.squaredNorm()};
   if (!(out.energy > 0.0)) return std::nullopt;
   for (const Candidate& c :
        scan_candidates(comparison, change, Eigen::MatrixXd(comparison.size(), 0), Eigen::VectorXd())) {
-    if (c.variant == own.variant) continue;
+    if (c.variant == variant) continue;
     const double share = std::clamp(c.gain / out.energy, 0.0, 1.0);
     out.nearest = c.effect;
     out.angle_deg = 180.0 / kPi * std::acos(std::sqrt(share));
@@ -38,6 +39,24 @@ std::optional<Separation> separation_of(const Comparison& comparison, std::size_
     return out;
   }
   return std::nullopt;
+}
+
+/// Effects of one parameter that are no candidates, at both ends of their moderate range.
+void add_others(const Comparison& comparison, std::vector<Separation>& out) {
+  std::vector<std::vector<Effect>> sets;
+  for (Effect effect : effect_variants()) {
+    if (find_knowledge(effect.id) != nullptr || effect.values.size() != 1) continue;
+    for (const double place : {0.0, 1.0}) {
+      effect.values.front() = effect.kind().parameters.front().moderate(place, false);
+      sets.push_back({effect});
+    }
+  }
+  const Eigen::MatrixXd changes = comparison.changes(sets, ComparisonBasis::kBaseline);
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    const Eigen::VectorXd change = changes.col(static_cast<Eigen::Index>(s));
+    if (!change.allFinite()) continue;
+    if (auto one = separation_of(comparison, sets[s].front(), -1, change)) out.push_back(std::move(*one));
+  }
 }
 
 }  // namespace
@@ -55,8 +74,11 @@ std::vector<Separation> separations(const Comparison& comparison) {
     });
     if (mirror) continue;
     seen.emplace_back(atoms[a].variant, size);
-    if (auto one = separation_of(comparison, a)) out.push_back(std::move(*one));
+    auto one = separation_of(comparison, effect, atoms[a].variant,
+                             comparison.atoms().col(static_cast<Eigen::Index>(a)));
+    if (one) out.push_back(std::move(*one));
   }
+  add_others(comparison, out);
   std::stable_sort(out.begin(), out.end(),
                    [](const Separation& a, const Separation& b) { return a.left < b.left; });
   return out;

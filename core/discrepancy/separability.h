@@ -20,7 +20,8 @@ struct Separation {
 };
 
 /// The nearest other effect to every candidate at its least and its largest moderate size, on the side of nominal where the first
-/// signature stands; those that are hardest to separate first.
+/// signature stands, and to effects of the library that are no candidates (they are flown for it); those that are hardest to
+/// separate first.
 std::vector<Separation> separations(const Comparison& comparison);
 
 }  // namespace fatmc

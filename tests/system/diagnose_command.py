@@ -30,7 +30,14 @@ def run(*arguments):
     return subprocess.run([fatmc, *arguments], capture_output=True, text=True)
 
 
-def flight(name, seed, *effects):
+def halved(text):
+    """The experiment with half of its amplitudes."""
+    line = next(line for line in text.split("\n") if line.startswith("amplitude_rad_s"))
+    values = [float(word) for word in line[line.index("[") + 1:line.index("]")].split(",")]
+    return text.replace(line, "amplitude_rad_s = " + str([0.5 * v for v in values]))
+
+
+def flight(name, seed, *effects, experiment=experiment):
     out = place(name + ".csv")
     options = [word for effect in effects for word in ("--effect", effect)]
     done = run("simulate", aircraft, experiment, "--seed", str(seed), "-o", out, *options)
@@ -86,6 +93,16 @@ assert read(patched) != read(aircraft)
 for bad in (aircraft, place("nowhere.toml")):
     done = run("diagnose", "--undo", bad, "-o", place("no.toml"))
     assert done.returncode == 2 and done.stderr.count("\n") == 1 and not os.path.exists(place("no.toml")), done
+
+# Two records at two levels are explained by one value; two effects at once need no second round, and it finds nothing more.
+quiet = write("quiet_experiment.toml", halved(read(experiment).decode()))
+low = flight("low", 4, "backlash:surface=aileron,width_deg=0.8", experiment=quiet)
+high = flight("high", 5, "backlash:surface=aileron,width_deg=0.8")
+answer, done = diagnosed("levels", "--model", aircraft, "--record", low, "--record", high, "--until-consistent")
+assert [e["name"] for e in answer["effects"]] == ["backlash:surface=aileron"], (answer["verdict"], answer["effects"])
+width = answer["effects"][0]["parameters"][0]
+assert abs(width["value"] - 0.8) < width["high"] - width["low"], width
+assert "cannot" not in " ".join(n for n in answer.get("notes", []) if "level or speed" in n), answer["notes"]
 
 # Nothing hidden, nothing named.
 answer, _ = diagnosed("null", "--model", aircraft, "--record", flight("null", 3))

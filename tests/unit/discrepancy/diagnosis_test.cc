@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "core/discrepancy/basis_file.h"
@@ -139,7 +140,8 @@ TEST_F(DiagnosisOfARecord, TheLawWithTwiceTheTurbulenceIsTheScatterOfOtherFlight
   const auto law = FittedLaw::of(comparison, sets.front(), FittedLaw::kFlights);
   ASSERT_TRUE(law);
   const FeatureLayout& layout = bench_->layout;
-  // The scatter of 60 other flights over that of the model's own with the same noise.
+  // The scatter of 60 other flights over that of the model's own with the same noise; the median over flights, since a flight
+  // that the gusts have banked far has many times the others' scatter.
   const auto white = [&](const std::vector<Effect>& effects) {
     const std::vector<std::vector<Effect>> one = {effects};
     const Eigen::MatrixXd features = bench_->model.fly(one, 400, 60, 2).front().features;
@@ -147,18 +149,22 @@ TEST_F(DiagnosisOfARecord, TheLawWithTwiceTheTurbulenceIsTheScatterOfOtherFlight
     return bench_->basis->law.whiten(layout, features.colwise() - mean);
   };
   const Eigen::MatrixXd with = white(sets.front()), without = white({});
-  double by_law = 0.0, a = 0.0, b = 0.0;
-  int rows = 0;
+  double by_law = 0.0;
+  std::vector<int> rows;
   for (const FeatureBlock& block : layout.blocks) {
     if (block.kind != FeatureKind::line) continue;
-    for (int row = block.first; row < block.first + 3; ++row, ++rows) {
+    for (int row = block.first; row < block.first + 3; ++row) {
+      rows.push_back(row);
       by_law += law->deviation()[row] * law->deviation()[row];
-      a += with.row(row).squaredNorm();
-      b += without.row(row).squaredNorm();
     }
   }
-  EXPECT_GT(a / b, 2.0) << "of p, q, r at 40 lines: gusts stand above the gyros' noise";
-  EXPECT_NEAR(by_law / rows / (a / b), 1.0, 0.1);
+  std::vector<double> ratios;
+  for (int n = 0; n < 60; ++n) {
+    ratios.push_back(with(rows, n).squaredNorm() / without(rows, n).squaredNorm());
+  }
+  std::nth_element(ratios.begin(), ratios.begin() + 30, ratios.end());
+  EXPECT_GT(ratios[30], 2.0) << "of p, q, r at 40 lines: gusts stand above the gyros' noise";
+  EXPECT_NEAR(by_law / static_cast<double>(rows.size()) / ratios[30], 1.0, 0.15);
   // An estimate that reads one feature has its deviation, with what 16 flights leave uncertain (four standard errors).
   Eigen::MatrixXd one = Eigen::MatrixXd::Zero(1, comparison.size());
   one(0, layout.blocks[10].first) = 1.0;
