@@ -34,6 +34,7 @@ plot::Points crosses(const std::string& name, const std::vector<double>& x, cons
 plot::Figure responses(const ErrorRuns& runs, const std::vector<MeanError>& errors,
                        const std::vector<Eigen::Matrix3cd>& truth) {
   plot::Figure figure;
+  figure.title = "Nominal and estimated response";
   figure.columns = 2;
   figure.panel_width = 420.0;
   const std::vector<double>& f = runs.frequency_hz;
@@ -60,6 +61,7 @@ plot::Figure responses(const ErrorRuns& runs, const std::vector<MeanError>& erro
 // Fig. 4-2: the errors inside the envelopes of unnoticed dynamics.
 plot::Figure envelopes(const ErrorRuns& runs, const std::vector<MeanError>& errors) {
   plot::Figure figure;
+  figure.title = "Error response within the limits of unnoticed dynamics";
   figure.columns = 2;
   figure.panel_width = 420.0;
   const std::vector<double>& f = runs.frequency_hz;

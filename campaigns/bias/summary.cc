@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "campaigns/base/table_order.h"
 #include "campaigns/base/verdict.h"
 #include "campaigns/bias/error_runs.h"
 
@@ -209,8 +210,7 @@ Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& 
     cell.add_table_4_5();
     cell.add_bias_estimates();
   }
-  std::stable_sort(out.begin(), out.end(),
-                   [](const TableRow& a, const TableRow& b) { return a.table < b.table; });
+  group_by_table(out);
   return out;
 }
 

@@ -134,16 +134,20 @@ Result<std::vector<StudyFigure>> figures(const CampaignSpec& spec, const RowSour
   const auto curve = insensitivity_curve(spec);
   if (!curve) return fail(curve.error());
   const std::string n = std::to_string(snr.front().runs()) + " runs";
-  out.push_back({"Fig. 5-2", "Insensitivity to rotating gusts of the same axis, from the linearised model.",
-                 insensitivity_figure(*curve)});
-  out.push_back({"Fig. 5-3",
-                 "Input signal-to-noise ratio, " + n +
-                     " a box: quartiles and median, whiskers to 1.5 interquartile ranges.",
-                 snr_figure(snr, lines->frequency_hz)});
-  out.push_back(
-      {"Fig. 5-4",
-       "Distribution of the normalised error over all lines and elements of " + n + ", and its law.",
-       distributions.figure(q)});
+  const auto add = [&](const char* id, const char* title, std::string caption, plot::Figure figure) {
+    figure.title = title;
+    out.push_back({id, std::move(caption), std::move(figure)});
+  };
+  add("Fig. 5-2", "Insensitivity to turbulence",
+      "Insensitivity to rotating gusts of the same axis, from the linearised model.",
+      insensitivity_figure(*curve));
+  add("Fig. 5-3", "Input signal-to-noise ratio",
+      "Input signal-to-noise ratio, " + n +
+          " a box: quartiles and median, whiskers to 1.5 interquartile ranges.",
+      snr_figure(snr, lines->frequency_hz));
+  add("Fig. 5-4", "Normalised errors and their law",
+      "Distribution of the normalised error over all lines and elements of " + n + ", and its law.",
+      distributions.figure(q));
   return out;
 }
 

@@ -89,6 +89,66 @@ StudyFigure history_figure(const CampaignSpec& spec, const std::map<std::uint32_
   return out;
 }
 
+/// Largest statistic of every unchanged hour, in ascending order.
+std::vector<double> worst_hours(const std::map<std::uint32_t, MonitoredCell>& cells, Detector detector) {
+  std::vector<double> out;
+  for (const auto& [index, cell] : cells) {
+    for (const MonitoredRun& run : cell.runs) {
+      if (const double worst = worst_of_hour(run, detector); !std::isnan(worst)) out.push_back(worst);
+    }
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// A point a threshold that `worst` tells apart: at each of its values the larger ones alarm, below all of them all do. Not a
+/// curve: an alarm that was on before counts as missed, so that a lower threshold may find less, and between two rates of
+/// n hours there is none.
+plot::Points detection_points(const std::vector<double>& worst, const std::vector<QuarterWindow>& found) {
+  plot::Points out;
+  const auto percent = [](std::ptrdiff_t part, std::size_t whole) {
+    return 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+  };
+  const auto add = [&](double threshold, std::ptrdiff_t alarmed) {
+    const auto hits = std::count_if(found.begin(), found.end(), [&](const QuarterWindow& w) {
+      return w.largest > threshold && !(w.before > threshold);
+    });
+    out.x.push_back(percent(alarmed, worst.size()));
+    out.y.push_back(percent(hits, found.size()));
+  };
+  for (auto at = worst.begin(); at != worst.end(); at = std::upper_bound(at, worst.end(), *at))
+    add(*at, worst.end() - std::upper_bound(at, worst.end(), *at));
+  add(-std::numeric_limits<double>::infinity(), static_cast<std::ptrdiff_t>(worst.size()));
+  return out;
+}
+
+plot::Panel roc_panel(const CampaignSpec& spec, const std::map<std::uint32_t, MonitoredCell>& cells,
+                      Detector detector, const std::vector<double>& worst) {
+  plot::Panel panel;
+  panel.title = std::string(name(detector));
+  panel.x.label = "hours with a false alarm, %";
+  panel.y.label = "found in W/4, %";
+  panel.x.range = panel.y.range = plot::Range{-3.0, 103.0};
+  panel.x.ticks = panel.y.ticks = {0.0, 20.0, 40.0, 60.0, 80.0, 100.0};
+  constexpr plot::Hue hues[] = {plot::Hue::blue,   plot::Hue::orange, plot::Hue::green,
+                                plot::Hue::purple, plot::Hue::red,    plot::Hue::grey};
+  std::size_t hue = 0;
+  for (const auto& [index, cell] : cells) {
+    if (std::isinf(cell.runs.front().onset_s)) continue;
+    std::vector<QuarterWindow> found;
+    for (const MonitoredRun& run : cell.runs)
+      found.push_back(quarter_window(run, alarm_statistic(run, detector)));
+    plot::Points points = detection_points(worst, found);
+    points.name = spec.cells[index].name;
+    points.filled = hue % 2 == 0;
+    points.radius_px = 2.0 + 0.8 * static_cast<double>(hue);  // points of several cells stand in one place
+    points.hue = hues[hue++ % std::size(hues)];
+    panel.marks.emplace_back(std::move(points));
+  }
+  std::reverse(panel.marks.begin(), panel.marks.end());  // the smallest on top
+  return panel;
+}
+
 /// Detection against false alarms, the threshold running through the worst values of the unchanged hours.
 StudyFigure roc_figure(const CampaignSpec& spec, const std::map<std::uint32_t, MonitoredCell>& cells) {
   StudyFigure out;
@@ -97,51 +157,18 @@ StudyFigure roc_figure(const CampaignSpec& spec, const std::map<std::uint32_t, M
   out.figure.columns = 2;
   std::size_t hours = 0;
   for (const Detector detector : kDetectors) {
-    std::vector<double> worst;
-    for (const auto& [index, cell] : cells) {
-      for (const MonitoredRun& run : cell.runs) {
-        const double value = worst_of_hour(run, detector);
-        if (!std::isnan(value)) worst.push_back(value);
-      }
-    }
-    hours = worst.size();
+    const std::vector<double> worst = worst_hours(cells, detector);
     if (worst.empty()) continue;
-    std::sort(worst.begin(), worst.end());
-    plot::Panel panel;
-    panel.title = std::string(name(detector));
-    panel.x.label = "hours with a false alarm, %";
-    panel.y.label = "found in W/4, %";
-    panel.x.range = panel.y.range = plot::Range{0.0, 100.0};
-    constexpr plot::Hue hues[] = {plot::Hue::blue,   plot::Hue::orange, plot::Hue::green,
-                                  plot::Hue::purple, plot::Hue::red,    plot::Hue::grey};
-    std::size_t hue = 0;
-    for (const auto& [index, cell] : cells) {
-      if (std::isinf(cell.runs.front().onset_s)) continue;
-      std::vector<QuarterWindow> found;
-      for (const MonitoredRun& run : cell.runs)
-        found.push_back(quarter_window(run, alarm_statistic(run, detector)));
-      plot::Line line;
-      line.name = spec.cells[index].name;
-      line.hue = hues[hue++ % std::size(hues)];
-      for (std::size_t i = 0; i <= worst.size(); ++i) {
-        // Just at the i-th worst value: the larger ones alarm.
-        const double threshold = i < worst.size() ? worst[i] : -std::numeric_limits<double>::infinity();
-        const auto above = i < worst.size()
-                               ? worst.end() - std::upper_bound(worst.begin(), worst.end(), threshold)
-                               : static_cast<std::ptrdiff_t>(worst.size());
-        const auto hits = std::count_if(found.begin(), found.end(), [&](const QuarterWindow& w) {
-          return w.largest > threshold && !(w.before > threshold);
-        });
-        line.x.push_back(100.0 * static_cast<double>(above) / static_cast<double>(worst.size()));
-        line.y.push_back(100.0 * static_cast<double>(hits) / static_cast<double>(found.size()));
-      }
-      panel.marks.emplace_back(std::move(line));
-    }
-    out.figure.panels.push_back(std::move(panel));
+    hours = worst.size();
+    out.figure.panels.push_back(roc_panel(spec, cells, detector, worst));
   }
-  out.caption =
-      "From " + std::to_string(hours) +
-      " hours of flight without a change. A flight whose alarm was on when the change came counts as missed.";
+  // 1 - (1 - p)^n = 95 %
+  const double bound =
+      100.0 * (1.0 - std::pow(0.05, 1.0 / static_cast<double>(std::max<std::size_t>(hours, 1))));
+  out.caption = "A point a threshold, from " + std::to_string(hours) +
+                " hours of flight without a change: no false alarm in any of them bounds the rate by " +
+                significant(bound, 2) +
+                " % (one-sided, 95 %). A flight whose alarm was on when the change came counts as missed.";
   return out;
 }
 

@@ -52,7 +52,12 @@ plot::Panel box_panel(const JudgedRuns& runs, const LineRuns& values, std::strin
 
 plot::Panel value_panel(const JudgedRuns& runs, const LineRuns& ratios, std::string title, plot::Hue hue) {
   plot::Panel panel = box_panel(runs, decibels(ratios), std::move(title), "Value (dB)", hue);
-  panel.marks.emplace_back(plot::Rule{"limit of stability", 0.0});
+  // A line, not a rule: it widens the axis to where the limit is.
+  panel.marks.emplace_back(plot::Line{"limit of stability",
+                                      {runs.frequency_hz.front(), runs.frequency_hz.back()},
+                                      {0.0, 0.0},
+                                      plot::Hue::grey,
+                                      plot::Dash::dashed});
   return panel;
 }
 
@@ -102,30 +107,36 @@ Result<std::vector<StudyFigure>> figures(const CampaignSpec& spec, const RowSour
   const std::string boxes = what_is_shown(runs);
   const std::string reading = " W = sigma + b + intergrid error, b of (2.145), elements combined by min.";
   const auto blue = plot::Hue::blue, orange = plot::Hue::orange;
-  const auto add = [&](const char* id, std::string caption, plot::Figure figure) {
+  const auto add = [&](const char* id, const char* title, std::string caption, plot::Figure figure) {
+    figure.title = title;
     out.push_back({id, std::move(caption), std::move(figure)});
   };
-  add("Fig. 5-5", "Nominal stability: the error of the estimate against the nominal model. " + boxes,
+  add("Fig. 5-5", "Nominal stability", "The error of the estimate against the nominal model. " + boxes,
       wide({value_panel(runs, runs.array(std::string(kNominalHInfinity)), "H-infinity, nominal", blue),
             value_panel(runs, runs.array(std::string(kNominalSsv)), "ssv, nominal", orange)}));
-  add("Fig. 5-6",
+  add("Fig. 5-6", "Robust stability, H-infinity",
       "Robust stability with an uncertainty of one standard deviation, H-infinity." + reading + " " + boxes,
       wide({value_panel(runs, runs.value(kMain, h_infinity), "H-infinity", blue)}));
-  add("Fig. 5-7", "The same by structured singular values, upper bound. " + boxes,
+  add("Fig. 5-7", "Robust stability, structured singular value",
+      "The same by structured singular values, upper bound. " + boxes,
       wide({value_panel(runs, runs.value(kMain, ssv), "ssv", orange)}));
-  add("Fig. 5-8", "Confidence in robust stability from H-infinity." + reading + " " + boxes,
+  add("Fig. 5-8", "Confidence of a line, H-infinity",
+      "Confidence in robust stability from H-infinity." + reading + " " + boxes,
       wide({confidence_panel(runs, runs.confidence(kMain, h_infinity, Rule::min), "p, H-infinity", blue)}));
-  add("Fig. 5-9", "Confidence in robust stability from ssv. " + boxes,
+  add("Fig. 5-9", "Confidence of a line, structured singular value",
+      "Confidence in robust stability from ssv. " + boxes,
       wide({confidence_panel(runs, runs.confidence(kMain, ssv, Rule::min), "p, ssv", orange)}));
   const std::string n = std::to_string(runs.runs()) + " runs.";
-  add("Fig. 5-10", "Confidence over the whole band from ssv, lines taken as independent. " + n,
+  add("Fig. 5-10", "Confidence over the band",
+      "Confidence over the whole band from ssv, lines taken as independent. " + n,
       histogram(runs.band(kMain, ssv, Rule::min)));
-  add("Fig. 5-11",
+  add("Fig. 5-11", "Total confidence of a line, H-infinity",
       "Total confidence from H-infinity: zero where nominal stability or the input SNR fails. " + boxes,
       wide({confidence_panel(runs, runs.total(kMain, h_infinity, Rule::min), "total p, H-infinity", blue)}));
-  add("Fig. 5-12", "Total confidence from ssv. " + boxes,
+  add("Fig. 5-12", "Total confidence of a line, structured singular value",
+      "Total confidence from ssv. " + boxes,
       wide({confidence_panel(runs, runs.total(kMain, ssv, Rule::min), "total p, ssv", orange)}));
-  add("Fig. 5-13", "Total confidence over the whole band from ssv. " + n,
+  add("Fig. 5-13", "Total confidence over the band", "Total confidence over the whole band from ssv. " + n,
       histogram(runs.total_band(kMain, ssv, Rule::min)));
   return out;
 }

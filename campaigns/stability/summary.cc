@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "campaigns/base/table_order.h"
 #include "campaigns/base/verdict.h"
 #include "campaigns/stability/judged_runs.h"
 #include "core/base/text.h"
@@ -285,14 +286,7 @@ Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& 
     }
     cell.add_total();
   }
-  // A table in one piece, in the order of its first row.
-  std::vector<std::string> order;
-  for (const TableRow& row : out) {
-    if (std::find(order.begin(), order.end(), row.table) == order.end()) order.push_back(row.table);
-  }
-  std::stable_sort(out.begin(), out.end(), [&](const TableRow& a, const TableRow& b) {
-    return std::find(order.begin(), order.end(), a.table) < std::find(order.begin(), order.end(), b.table);
-  });
+  group_by_table(out);
   return out;
 }
 

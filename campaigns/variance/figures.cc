@@ -18,6 +18,7 @@ plot::Figure nine_panels(const ElementRuns& runs) {
   std::iota(all.begin(), all.end(), std::size_t{0});
   const std::size_t lines = runs.frequency_hz.size();
   plot::Figure figure;
+  figure.title = "Variance of the estimate, from one run and between runs";
   figure.columns = 3;
   figure.note = "Lines side by side: all from 0.05 to 0.20 Hz and from 4.85 to 5 Hz, every tenth between.";
   for (std::size_t e = 0; e < kElements; ++e) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "campaigns/base/prepared_trials.h"
+#include "campaigns/base/table_order.h"
 #include "campaigns/base/verdict.h"
 #include "campaigns/flown/flown_cell.h"
 #include "campaigns/variance/element_runs.h"
@@ -169,8 +170,7 @@ Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& 
     cell.add_agreement();
     cell.add_border_factors();
   }
-  std::stable_sort(out.begin(), out.end(),
-                   [](const TableRow& a, const TableRow& b) { return a.table < b.table; });
+  group_by_table(out);
   return out;
 }
 

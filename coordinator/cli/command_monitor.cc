@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "coordinator/cli/bias_choice.h"
 #include "coordinator/cli/command.h"
 #include "coordinator/cli/estimate_record.h"
 #include "coordinator/cli/loop_controller.h"
@@ -23,7 +24,8 @@ using Json = nlohmann::ordered_json;
 
 struct MonitorArguments {
   std::string record, meta, nominal;
-  std::string combine = "bonferroni", bias = "on";
+  std::string combine = "bonferroni";
+  BiasChoice bias;
   StabilityOptions options;
   LpmOptions lpm;
   int window_periods = 2;
@@ -51,8 +53,10 @@ Result<StabilityMonitor> make_monitor(const MonitorArguments& arguments, const R
                           record.rate_hz, record.hold, *controller, frequency_hz});
   if (!nominal) return fail(nominal.error());
   const std::string missing = effects_not_shown(*nominal, arguments.nominal);
-  if (!missing.empty()) std::fprintf(stderr, "fatmc: %s\n", missing.c_str());  // standard output carries epochs
-  return StabilityMonitor(*grid, static_cast<int>(record.output.size()), nominal->loop, arguments.options);
+  if (!missing.empty())
+    std::fprintf(stderr, "fatmc: %s\n", missing.c_str());  // standard output carries epochs
+  return StabilityMonitor(*grid, static_cast<int>(record.output.size()), nominal->loop, arguments.options,
+                          arguments.bias.constant());
 }
 
 /// Feeds rows to a monitor and prints an epoch whenever one is due.
@@ -136,7 +140,7 @@ Exit monitor_stream(const MonitorArguments& arguments) {
 
 Exit run_monitor(MonitorArguments& arguments) {
   arguments.options.combine = arguments.combine == "min" ? CombinationRule::min : CombinationRule::bonferroni;
-  arguments.options.bias = arguments.bias == "on";
+  arguments.options.bias = arguments.bias.counted();
   return arguments.record == "-" ? monitor_stream(arguments) : monitor_file(arguments);
 }
 
@@ -168,9 +172,7 @@ void add_monitor_command(CLI::App& app, Exit& exit) {
                    "over the elements of a line: bonferroni (Fig. 5-16) or min")
       ->check(CLI::IsMember({"min", "bonferroni"}))
       ->capture_default_str();
-  command->add_option("--bias", arguments->bias, "count the interpolation bias: on or off")
-      ->check(CLI::IsMember({"on", "off"}))
-      ->capture_default_str();
+  add_bias_option(*command, arguments->bias);
   command
       ->add_option("--intergrid", arguments->options.intergrid, "allowance for what lies between the lines")
       ->check(CLI::Range(0.0, 100.0))

@@ -155,9 +155,11 @@ Exit run(const Options& options) {
         Error{options.page, 0, "-o", "is a database, which would be overwritten; write another file"});
   }
   if (!options.figures.empty()) {
-    if (Status status = check_output_directory(options.figures); !status) return report(status.error());
+    if (Status status = check_output_directory(options.figures, "--figures"); !status)
+      return report(status.error());
   }
-  const std::vector<std::string> databases = options.databases.empty() ? last_databases() : options.databases;
+  const std::vector<std::string> databases =
+      each_once(options.databases.empty() ? last_databases() : options.databases);
   std::vector<CampaignPage> pages = {formula_page()};
   for (const std::string& path : databases) {
     const Exit exit = use_database(path, [&] {

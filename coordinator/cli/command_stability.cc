@@ -8,11 +8,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "coordinator/cli/bias_choice.h"
 #include "coordinator/cli/command.h"
 #include "coordinator/cli/estimate_record.h"
 #include "coordinator/cli/loop_controller.h"
 #include "coordinator/cli/output_path.h"
 #include "coordinator/input/nominal_plant_file.h"
+#include "core/base/check.h"
 #include "core/base/text.h"
 #include "core/record/column_file.h"
 #include "core/stability/estimate_stability.h"
@@ -26,7 +28,7 @@ struct StabilityArguments {
   EstimateOptions estimate;
   std::string nominal;
   std::string combine = "min";
-  std::string bias = "on";
+  BiasChoice bias;
   StabilityOptions options;
   std::optional<double> gain;
   std::string directory;
@@ -52,6 +54,12 @@ Result<JudgedRecord> judge(const StabilityArguments& arguments) {
       arguments.nominal, {channel_names(record, record.input), channel_names(record, record.output),
                           record.rate_hz, record.hold, *controller, estimated->response.frm.frequency_hz});
   if (!nominal) return fail(nominal.error());
+  // b is a share of |G|, which any correction of the estimate has reached already.
+  if (arguments.bias.constant() != BiasConstant::exact_offsets) {
+    FATMC_CHECK(estimated->response.grid.has_value(), "the fast LPM has a grid");
+    estimated->response.bias =
+        interpolation_bias(*estimated->response.grid, estimated->response.frm, arguments.bias.constant());
+  }
   EstimateStability stability =
       judge_estimate(estimated->response.frm, estimated->response.bias, nominal->loop, arguments.options);
   return JudgedRecord{std::move(*estimated), std::move(*nominal), std::move(stability)};
@@ -94,7 +102,7 @@ std::string summary_json(const StabilityArguments& arguments, const JudgedRecord
   json["p_total_hinf"] = band.p_total_h_infinity;
   json["p_total_ssv"] = band.p_total_ssv;
   json["combine"] = arguments.combine;
-  json["bias"] = arguments.bias;
+  json["bias"] = arguments.bias.text;
   json["intergrid"] = arguments.options.intergrid;
   json["nominal_stable_hinf"] = band.nominally_stable_h_infinity;
   json["minimum_snr_db"] = arguments.options.minimum_snr_db;
@@ -213,14 +221,14 @@ void print_summary(const StabilityArguments& arguments, const JudgedRecord& judg
   std::printf("ssv: upper and lower bound agree to 1e-8 on %d of %zu lines\n", certified_lines(judged),
               judged.stability.lines.size());
   std::printf("elements combined by %s, bias %s\nwritten: %s/lines.csv, %s/summary.json\n",
-              arguments.combine.c_str(), arguments.bias.c_str(), arguments.directory.c_str(),
+              arguments.combine.c_str(), arguments.bias.text.c_str(), arguments.directory.c_str(),
               arguments.directory.c_str());
 }
 
 Exit run_stability(StabilityArguments& arguments) {
   if (Status status = check_output_directory(arguments.directory); !status) return report(status.error());
   arguments.options.combine = arguments.combine == "min" ? CombinationRule::min : CombinationRule::bonferroni;
-  arguments.options.bias = arguments.bias == "on";
+  arguments.options.bias = arguments.bias.counted();
   const Result<JudgedRecord> judged = judge(arguments);
   if (!judged) return report(judged.error());
   const std::string lines = lines_csv(*judged), summary = summary_json(arguments, *judged);
@@ -252,9 +260,7 @@ void add_stability_command(CLI::App& app, Exit& exit) {
                    "joint probability")
       ->check(CLI::IsMember({"min", "bonferroni"}))
       ->capture_default_str();
-  command->add_option("--bias", arguments->bias, "count the interpolation bias: on or off")
-      ->check(CLI::IsMember({"on", "off"}))
-      ->capture_default_str();
+  add_bias_option(*command, arguments->bias);
   command
       ->add_option("--intergrid", arguments->options.intergrid,
                    "allowance for what lies between the lines, as a share of each element's magnitude")

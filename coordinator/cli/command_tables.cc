@@ -49,7 +49,7 @@ Exit run(const Options& options) {
   } else {
     rows.clear();
   }
-  for (const std::string& path : databases) {
+  for (const std::string& path : each_once(databases)) {
     const Exit exit = use_database(path, [&] {
       const auto database = StudyDatabase::open(path);
       if (!database) return report(database.error());

@@ -36,11 +36,11 @@ std::vector<fs::path> missing_folders(fs::path path) {
 
 }  // namespace
 
-Status check_output_directory(const std::string& path) {
+Status check_output_directory(const std::string& path, const std::string& option) {
   std::error_code error;
-  if (path.empty()) return fail(Error{"", 0, "-o", "names nothing, name a directory"});
+  if (path.empty()) return fail(Error{"", 0, option, "names nothing, name a directory"});
   if (fs::exists(path, error) && !fs::is_directory(path, error)) {
-    return fail(Error{path, 0, "-o", "is a file, name a directory"});
+    return fail(Error{path, 0, option, "is a file, name a directory"});
   }
   const std::vector<fs::path> made = missing_folders(fs::absolute(path).lexically_normal());
   error.clear();
@@ -51,7 +51,7 @@ Status check_output_directory(const std::string& path) {
   for (auto folder = made.rbegin(); folder != made.rend(); ++folder) fs::remove(*folder, error);
   if (reason == 0) return {};
   return fail(
-      Error{path, 0, "-o",
+      Error{path, 0, option,
             "cannot be written to (" + std::string(std::strerror(reason)) + "), name another directory"});
 }
 

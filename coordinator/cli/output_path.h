@@ -8,10 +8,10 @@
 
 namespace fatmc::cli {
 
-/// Fails where the directory `path` is a file, or cannot be made or written to. It is tried out: folders that
+/// `option`: the name of the option in the error. Fails where the directory `path` is a file, or cannot be made or written to. It is tried out: folders that
 /// are missing are made, a file is written, and all of it is taken away again, so that a command that refuses
 /// its input leaves nothing.
-Status check_output_directory(const std::string& path);
+Status check_output_directory(const std::string& path, const std::string& option = "-o");
 
 /// The same for a file: its folder must exist and take files, and nothing but a plain file may stand in its
 /// place.

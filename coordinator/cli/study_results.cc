@@ -1,6 +1,8 @@
 #include "coordinator/cli/study_results.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 
 #include "campaigns/registry_summaries.h"
@@ -13,6 +15,22 @@ std::vector<std::string> last_databases() {
   std::vector<std::string> out;
   for (std::string line; std::getline(in, line);) {
     if (!line.empty()) out.push_back(line);
+  }
+  return out;
+}
+
+std::vector<std::string> each_once(const std::vector<std::string>& databases) {
+  std::vector<std::string> out;
+  std::vector<std::filesystem::path> known;
+  for (const std::string& path : databases) {
+    std::error_code ignored;
+    const std::filesystem::path file = std::filesystem::weakly_canonical(path, ignored);
+    if (std::find(known.begin(), known.end(), file) != known.end()) {
+      std::fprintf(stderr, "fatmc: note: %s is given twice and shown once\n", path.c_str());
+      continue;
+    }
+    known.push_back(file);
+    out.push_back(path);
   }
   return out;
 }

@@ -14,6 +14,9 @@ namespace fatmc::cli {
 /// The databases of the last run (results/last, one a line); none where nothing has run yet.
 std::vector<std::string> last_databases();
 
+/// Without those that name a file again that stands before: a campaign is shown once, and a note on standard error says so.
+std::vector<std::string> each_once(const std::vector<std::string>& databases);
+
 /// A database with the study that can read it.
 class StudyDatabase {
  public:

@@ -112,6 +112,9 @@ std::vector<double> logarithmic_ticks(const Range& range, int count) {
   FATMC_CHECK(range.low > 0.0 && range.low < range.high, "a positive range");
   std::vector<double> out = multiples(range, {1});
   if (out.size() < 3) out = multiples(range, {1, 2, 5});
+  // A wide axis over a decade has room for more.
+  if (auto more = multiples(range, {1, 2, 3, 4, 5, 6, 8}); static_cast<int>(more.size()) <= count)
+    out = std::move(more);
   if (out.size() < 2) return linear_ticks(range, count);
   while (static_cast<int>(out.size()) > 2 * count) {  // every second decade of many
     for (std::size_t k = 1; k < out.size(); ++k) out.erase(out.begin() + static_cast<std::ptrdiff_t>(k));

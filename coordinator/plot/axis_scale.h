@@ -11,8 +11,8 @@ namespace fatmc::plot {
 /// Round values (1, 2 or 5 times a power of ten apart) inside the range, about `count` of them.
 std::vector<double> linear_ticks(const Range& range, int count);
 
-/// Powers of ten inside the range; where there are fewer than three, 1, 2 and 5 times powers of ten; where
-/// those are fewer than two as well, linear ticks.
+/// Powers of ten inside the range; where there are fewer than three, 1, 2 and 5 times powers of ten; 1, 2, 3, 4, 5, 6 and 8
+/// times where `count` has room for all of them. Fewer than two: linear ticks.
 std::vector<double> logarithmic_ticks(const Range& range, int count);
 
 /// The tick's text: evenly spaced ticks have as many decimals as their spacing, others as many as they need.

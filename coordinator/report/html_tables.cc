@@ -21,7 +21,7 @@ std::string one_table(const std::vector<TableRow>& rows, const std::string& pref
     if (const int reason = reasons.number_of(row)) verdict += " [" + std::to_string(reason) + "]";
     const bool repeated = above != nullptr && above->row == row.row;
     cells.push_back({repeated ? "" : html::text(row.row), html::text(row.quantity), html::text(row.unit),
-                     table_number(row.published, row.unit), table_number(row.value, row.unit),
+                     table_number(row.published, row.unit), table_value(row),
                      table_interval(row), row.n > 0 ? std::to_string(row.n) : "-", verdict});
     above = &row;
   }

@@ -8,15 +8,39 @@
 
 namespace fatmc {
 
-std::string table_number(double value, const std::string& unit) {
+namespace {
+
+int side(double of, double reference) { return of < reference ? -1 : of > reference ? 1 : 0; }
+
+// Of `value`, whose side of the printed figure decides.
+std::string decisive_number(double value, const TableRow& row) {
+  std::string text = table_number(value, row.unit);
+  if (row.verdict.empty() || !std::isfinite(value) || !std::isfinite(row.published)) return text;
+  double shown = 0.0, printed = 0.0;  // both as the reader sees them
+  if (!parse_double(table_number(row.published, row.unit), printed)) return text;
+  for (int more = 1; more <= 6; ++more) {
+    if (!parse_double(text, shown) || side(shown, printed) == side(value, row.published)) return text;
+    text = table_number(value, row.unit, more);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string table_number(double value, const std::string& unit, int more) {
   if (!std::isfinite(value)) return "-";
-  if (unit == "dB" && value != 0.0 && std::abs(value) < 1.0) return significant(value, 2);
-  return unit == "%" || unit == "dB" ? fixed(value, 1) : significant(value, 4);
+  if (unit == "dB" && value != 0.0 && std::abs(value) < 1.0) return significant(value, 2 + more);
+  return unit == "%" || unit == "dB" ? fixed(value, 1 + more) : significant(value, 4 + more);
 }
 
 std::string table_interval(const TableRow& row) {
   if (!std::isfinite(row.low) && !std::isfinite(row.high)) return "-";
-  return table_number(row.low, row.unit) + " to " + table_number(row.high, row.unit);
+  return decisive_number(row.low, row) + " to " + decisive_number(row.high, row);
+}
+
+std::string table_value(const TableRow& row) {
+  const bool agrees = row.verdict.empty() || row.verdict == "match" || row.verdict == "exact";
+  return agrees ? table_number(row.value, row.unit) : decisive_number(row.value, row);
 }
 
 std::string table_heading(const std::string& table) {

@@ -65,7 +65,7 @@ std::string format_table(const std::vector<TableRow>& rows, TableFormat format) 
     const bool repeated = above != nullptr && above->row == row.row && !markdown;
     const auto plain = [&](const std::string& text) { return markdown ? markdown_text(text) : text; };
     lines.push_back({repeated ? "" : plain(row.row), plain(row.quantity), row.unit,
-                     table_number(row.published, row.unit), table_number(row.value, row.unit),
+                     table_number(row.published, row.unit), table_value(row),
                      table_interval(row), row.n > 0 ? std::to_string(row.n) : "-", verdict});
     above = &row;
   }

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "core/base/check.h"
-#include "core/ident/interpolation_bias.h"
 
 namespace fatmc {
 namespace {
@@ -30,11 +29,12 @@ std::vector<int> read_bins(const LpmGrid& grid) {
 }  // namespace
 
 StabilityMonitor::StabilityMonitor(const LpmGrid& grid, int n_out, NominalLoop nominal,
-                                   const StabilityOptions& options)
+                                   const StabilityOptions& options, BiasConstant constant)
     : grid_(grid),
       n_out_(n_out),
       nominal_(std::move(nominal)),
       options_(options),
+      constant_(constant),
       lpm_(grid, n_out),
       measured_(grid.total_samples(), read_bins(grid), n_out + grid.n_in()),
       references_(grid.total_samples(), excited_bins(grid), grid.n_in()),
@@ -58,8 +58,8 @@ MonitorEpoch StabilityMonitor::epoch() {
   references_.spectrum(reference_);
   lpm_.load_spectra(spectra_.leftCols(n_out_), spectra_.rightCols(grid_.n_in()));
   estimate_ = &lpm_.indirect(reference_);
-  const EstimateStability judged =
-      judge_estimate(*estimate_, interpolation_bias(grid_, *estimate_), nominal_, options_, &scalings_);
+  const EstimateStability judged = judge_estimate(
+      *estimate_, interpolation_bias(grid_, *estimate_, constant_), nominal_, options_, &scalings_);
   return {measured_.count(), measured_.full(), judged.band};
 }
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/ident/fast_lpm.h"
+#include "core/ident/interpolation_bias.h"
 #include "core/signal/sliding_dft.h"
 #include "core/stability/estimate_stability.h"
 
@@ -29,8 +30,9 @@ struct MonitorEpoch {
 
 class StabilityMonitor {
  public:
-  /// `nominal` has one response a line of the grid.
-  StabilityMonitor(const LpmGrid& grid, int n_out, NominalLoop nominal, const StabilityOptions& options);
+  /// `nominal` has one response a line of the grid. `constant` of the interpolation bias, where the options count it.
+  StabilityMonitor(const LpmGrid& grid, int n_out, NominalLoop nominal, const StabilityOptions& options,
+                   BiasConstant constant = BiasConstant::exact_offsets);
 
   /// One sample: n_out outputs, n_in inputs, n_in references.
   void push(std::span<const double> outputs, std::span<const double> inputs,
@@ -46,6 +48,7 @@ class StabilityMonitor {
   int n_out_;
   NominalLoop nominal_;
   StabilityOptions options_;
+  BiasConstant constant_;
   FastLpm lpm_;
   SlidingDft measured_;    ///< outputs and inputs at all bins of the estimate
   SlidingDft references_;  ///< at the excited bins

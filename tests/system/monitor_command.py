@@ -32,6 +32,12 @@ with tempfile.TemporaryDirectory() as folder:
     rows = open(flight).read()
 
     # The last epoch of a record that is one window long is the judgement of `fatmc stability`.
+    for bias in ("on", "constant"):
+        last = epochs(run("monitor", flight, "--nominal", MODEL, "--every", 400, "--combine", "min", "--bias", bias))[-1]
+        done = run("stability", flight, "--nominal", MODEL, "--bias", bias, "-o", f"{folder}/{bias}")
+        summary = json.load(open(f"{folder}/{bias}/summary.json"))
+        for key in ("p_band_ssv", "p_band_hinf"):
+            assert abs(last[key] - summary[key]) < 1e-8, (bias, key, last, summary[key])
     whole = epochs(run("monitor", flight, "--nominal", MODEL, "--every", 100, "--combine", "min", "--bias", "off"))
     assert [round(e["t"]) for e in whole] == [100, 200, 300, 400]
     assert [e["window_full"] for e in whole] == [False, False, False, True]

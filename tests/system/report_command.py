@@ -82,6 +82,11 @@ with tempfile.TemporaryDirectory() as folder:
     assert "partial: 4 of 6 trials" in run("tables", database).stdout
 
     refused(run("report", f"{folder}/none.db", "-o", page), "none.db", "no such database")
+    done = run("report", database, f"{folder}/../{os.path.basename(folder)}/c.db", "-o", f"{folder}/again.html")
+    assert done.returncode == 0 and "given twice" in done.stderr and "1 campaigns" in done.stdout, done
+    assert "given twice" in run("tables", database, database).stderr
+    assert run("tables", database, database).stdout == run("tables", database).stdout
+    refused(run("report", database, "-o", page, "--figures", database), "--figures", "is a file")
     refused(run("report", database, "-o", folder), folder)
     refused(run("report", database, "-o", f"{folder}/missing/c.html"), "missing")
     refused(run("report", database), "-o")

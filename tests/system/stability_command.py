@@ -68,6 +68,12 @@ by_gain, _, _ = judged("--gain", "0.1")
 assert by_gain == rows, "controller_gain of the record is 0.1 times the identity"
 _, joint, _ = judged("--combine", "bonferroni")
 assert joint["p_band_ssv"] <= summary["p_band_ssv"]
+offsets, same, _ = judged("--bias", "offsets")
+assert offsets == rows and same["bias"] == "offsets"
+constant, limit, text = judged("--bias", "constant")
+assert limit["bias"] == "constant" and "bias constant" in text
+# The window of the first line lies on one side: its actual offsets have a larger constant than many lines (2.145).
+assert float(constant[0]["hinf"]) < float(rows[0]["hinf"]) and limit["p_band_ssv"] >= summary["p_band_ssv"]
 without, unbiased, _ = judged("--bias", "off", "--intergrid", "0")
 assert all(float(a["hinf"]) < float(b["hinf"]) for a, b in zip(without, rows))
 assert unbiased["p_band_ssv"] > summary["p_band_ssv"]
@@ -100,6 +106,7 @@ refused([record, "--nominal", path("nan.csv", "\n".join([response[0], response[1
         "nan.csv:2", "re")
 refused([record, "--nominal", aircraft, "--intergrid", "-1"], "--intergrid")
 refused([record, "--nominal", aircraft, "--combine", "max"], "--combine")
+refused([record, "--nominal", aircraft, "--bias", "some"], "--bias", "constant")
 refused([record, "--nominal", aircraft, "--n-e", "3"])
 # Effects of a model file that the linearised airframe does not show are named, in text and JSON; without any there is no word.
 with open(aircraft) as file:

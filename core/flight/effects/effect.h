@@ -147,10 +147,10 @@ struct ModifiedFlight {
   FlightSetup setup;
 };
 
-/// Aircraft and setup with the effects, in their order (effects on one quantity multiply or add; the order of
-/// effects on different ones does not matter). Effects at
-/// nominal values leave both equal to what was given. Fails on an invalid effect or where the aircraft, with
-/// or without the effects, has no level flight.
+/// Aircraft and setup with the effects, one after another in the order given (a file: as written), which matters where one takes
+/// what those before have left: quadratic_damping and cubic_moment the derivative, gyro_misalignment scale and turn (docs/effects.md).
+/// Effects at nominal values leave both equal to what was given. Fails on an invalid effect or where the aircraft, with or
+/// without the effects, has no level flight.
 Result<ModifiedFlight> apply(const Aircraft& aircraft, const FlightSetup& setup,
                              std::span<const Effect> effects);
 

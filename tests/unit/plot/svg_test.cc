@@ -38,6 +38,8 @@ TEST(Ticks, AreRoundAndInsideTheRange) {
   EXPECT_THAT(texts(linear_ticks({-60.0, 20.0}, 5)), ElementsAre("-60", "-40", "-20", "0", "20"));
   EXPECT_THAT(texts(logarithmic_ticks({0.1, 100.0}, 6)), ElementsAre("0.1", "1", "10", "100"));
   EXPECT_THAT(texts(logarithmic_ticks({0.285, 2.9}, 6)), ElementsAre("0.5", "1", "2"));
+  EXPECT_THAT(texts(logarithmic_ticks({0.285, 2.9}, 12)),
+              ElementsAre("0.3", "0.4", "0.5", "0.6", "0.8", "1", "2"));
   EXPECT_THAT(texts(logarithmic_ticks({2.1, 4.9}, 5)), ElementsAre("3", "4"));
   EXPECT_LE(logarithmic_ticks({1e-12, 1e12}, 6).size(), 13U);
 }

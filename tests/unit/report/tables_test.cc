@@ -35,6 +35,23 @@ TEST(Tables, TextIsABlockATableWithAlignedColumnsAndReasonsBelow) {
             "  [1] not printed\n");
 }
 
+TEST(Tables, ShowAsManyDigitsAsTheVerdictNeeds) {
+  const auto line_of = [](double published, double value, double low, double high, const char* unit,
+                          const char* verdict) {
+    const TableRow row = {"T", "r", "q", unit, published, value, low, high, 50, verdict, ""};
+    const std::string text = format_tables({row}, TableFormat::markdown);
+    return text.substr(text.rfind("| r"));
+  };
+  EXPECT_NE(line_of(100.0, 99.7, 99.5, 99.998, "%", "differs").find("| 99.5 to 99.998 |"), std::string::npos);
+  EXPECT_NE(line_of(25.0, 25.3, 25.02, 26.0, "%", "differs").find("| 25.02 to 26.0 |"), std::string::npos);
+  EXPECT_NE(line_of(25.0, 25.01, 25.004, 26.0, "%", "differs").find(" 25.01 | 25.004 to 26.0 |"),
+            std::string::npos);
+  EXPECT_NE(line_of(0.8, 0.9, 0.80003, 1.0, "", "differs").find(" 0.80003 to 1 |"), std::string::npos);
+  // An end that is the printed figure holds it; a match inside rounded ends as well.
+  EXPECT_NE(line_of(100.0, 99.0, 98.0, 100.0, "%", "match").find(" 98.0 to 100.0 |"), std::string::npos);
+  EXPECT_NE(line_of(25.0, 25.01, 24.0, 26.0, "%", "match").find(" 25.0 |  24.0 to 26.0 |"), std::string::npos);
+}
+
 TEST(Tables, MarkdownHasARuleUnderItsHeader) {
   const std::string text = format_tables(kRows, TableFormat::markdown);
   EXPECT_EQ(text.substr(0, 18), "### Table 5-5\n\n| r");
@@ -72,7 +89,8 @@ TEST(ProgressText, SaysHowFarHowFastAndHowPrecise) {
   EXPECT_EQ(cli::progress_text(progress, meter), "100/300 trials, 50/s, ETA 0:04");
   progress.failed = 3;
   progress.precision = "x 0.95 in [0.9, 1]";
-  EXPECT_EQ(cli::progress_text(progress, meter), "100/300 trials, 3 not ok, 50/s, ETA 0:04, x 0.95 in [0.9, 1]");
+  EXPECT_EQ(cli::progress_text(progress, meter),
+            "100/300 trials, 3 not ok, 50/s, ETA 0:04, x 0.95 in [0.9, 1]");
   progress.paused = true;
   progress.precision.clear();
   EXPECT_EQ(cli::progress_text(progress, meter), "100/300 trials, 3 not ok, paused (fatmc resume goes on)");

@@ -90,6 +90,23 @@ TEST(StabilityMonitor, JudgesAFullWindowAsTheCommandJudgesTheRecord) {
   }
 }
 
+TEST(StabilityMonitor, CountsTheBiasWithTheConstantItIsGiven) {
+  const LpmGrid g = grid();
+  const Loop loop = fly(4, 1 << 30, 0.4);
+  std::vector<double> h;
+  for (const BiasConstant constant : {BiasConstant::exact_offsets, BiasConstant::limit}) {
+    StabilityMonitor monitor(g, 1, nominal(g), {}, constant);
+    push_to(monitor, loop, 0, 2 * kPeriod);
+    const MonitorEpoch epoch = monitor.epoch();
+    const FrmEstimate& estimate = monitor.estimate();
+    const EstimateStability expected =
+        judge_estimate(estimate, interpolation_bias(g, estimate, constant), nominal(g));
+    EXPECT_NEAR(epoch.band.p_h_infinity, expected.band.p_h_infinity, 1e-12);
+    h.push_back(expected.lines.front().h_infinity);
+  }
+  EXPECT_GT(h[0], h[1]);  // the first line's window lies on one side
+}
+
 TEST(StabilityMonitor, ASuddenLossOfMarginIsSeenBeforeTheWindowHasPassed) {
   const LpmGrid g = grid();
   const int change = 3 * kPeriod;

@@ -156,6 +156,11 @@ TEST(StabilitySummary, HasARowForEveryPublishedFigureAndDrawsNineFigures) {
   ASSERT_TRUE(drawn);
   ASSERT_EQ(drawn->size(), 9U);
   EXPECT_EQ(drawn->front().id, "Fig. 5-5");
+  for (const StudyFigure& figure : *drawn) EXPECT_NE(figure.figure.title, "") << figure.id;
+  // The limit is drawn where values stay far below it.
+  const auto& limit = std::get<plot::Line>(drawn->front().figure.panels.front().marks.back());
+  EXPECT_EQ(limit.name, "limit of stability");
+  EXPECT_EQ(limit.y, (std::vector<double>{0.0, 0.0}));
   EXPECT_EQ(drawn->back().id, "Fig. 5-13");
 }
 
