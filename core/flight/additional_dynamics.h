@@ -16,6 +16,10 @@
 //   F_s = m_s (w^2 y + 2 z w dy/dt) acts on the body at the tank, instead of the frozen mass's -m_s a. With
 //   a_0 and mu = 1/m + (tank's inverse inertia) of the body with frozen liquid:
 //   dF = F_s + m_s a,   a = a_0 + mu dF   =>   a = (a_0 + mu F_s) / (1 - mu m_s)
+//   What the liquid weighs down on floor and front of its tank, -m_s f with f the specific force along x_b and z_b at the tank,
+//   acts at y instead of at the frozen place: M += (0, y, 0) x (-m_s f), that is
+//   dL = -m_s y f_z,   dN = m_s y f_x
+//   (level and at rest f_z = -g: liquid to the right rolls to the right). Left out: y in the inertia, m_s x y and m_s y^2.
 #pragma once
 
 #include "core/flight/dynamics.h"
@@ -126,6 +130,13 @@ class AdditionalDynamics {
     const T& p = x[state::rates];
     const T& q = x[state::rates + 1];
     const T& r = x[state::rates + 2];
+    const T ahead = force[0] * k.inverse_mass + dx[state::rates + 1] * s.down_m + p * r * s.down_m -
+                    (q * q + r * r) * s.forward_m;
+    const T down = force[2] * k.inverse_mass - dx[state::rates + 1] * s.forward_m + r * p * s.forward_m -
+                   (p * p + q * q) * s.down_m;
+    const T roll = -s.mass_kg * x[state::slosh] * down, yaw = s.mass_kg * x[state::slosh] * ahead;
+    dx[state::rates] = dx[state::rates] + k.inverse_xx * roll + k.inverse_xz * yaw;
+    dx[state::rates + 2] = dx[state::rates + 2] + k.inverse_xz * roll + k.inverse_zz * yaw;
     const T frozen = force[1] * k.inverse_mass + dx[state::rates + 2] * s.forward_m -
                      dx[state::rates] * s.down_m + q * (p * s.forward_m + r * s.down_m);
     const T spring =

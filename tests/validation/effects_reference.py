@@ -83,19 +83,21 @@ class Hidden(Model):
             force = mass * (w * w * y + 2 * damping * w * dy)
             place = np.array([ahead, 0.0, down])
 
-            def specific(side):
-                """Specific force along y at the tank when the liquid adds `side` to what it does as a solid."""
-                d = self.motion(rigid, cmd, np.array([0.0, side, 0.0]), place)
+            def specific(side, turn):
+                """Specific force at the tank when the liquid adds force `side` and moment `turn` to what it does as a solid."""
+                d = self.motion(rigid, cmd, np.array([0.0, side, 0.0]), place, turn)
                 omega = rigid[3:6]
                 a = d[0:3] + np.cross(omega, rigid[0:3]) + np.cross(d[3:6], place) + np.cross(omega, np.cross(omega, place))
                 phi, theta = rigid[6:8]
-                return a[1] - G * np.sin(phi) * np.cos(theta)
+                return a - G * np.array([-np.sin(theta), np.sin(phi) * np.cos(theta), np.cos(phi) * np.cos(theta)])
 
+            # What it leans on floor and front does so at y; neither component hangs on side or turn.
+            turn = np.cross([0.0, y, 0.0], -mass * specific(0.0, np.zeros(3)))
             # side = force + mass a(side), and a is linear in side: two points give the line.
-            a0, a1 = specific(0.0), specific(1.0)
+            a0, a1 = specific(0.0, turn)[1], specific(1.0, turn)[1]
             push = (force + mass * a0) / (1 - mass * (a1 - a0))
-            ddy = -(specific(push) + w * w * y + 2 * damping * w * dy)
-            d = self.motion(rigid, cmd, np.array([0.0, push, 0.0]), place)
+            ddy = -(specific(push, turn)[1] + w * w * y + 2 * damping * w * dy)
+            d = self.motion(rigid, cmd, np.array([0.0, push, 0.0]), place, turn)
         else:
             ddy = 0.0
             d = self.motion(rigid, cmd, np.zeros(3))
@@ -114,8 +116,8 @@ class Hidden(Model):
             s = np.minimum(np.maximum(self.linkage, s - self.play), s + self.play)
         return self.share * s
 
-    def motion(self, x, cmd, extra, at=np.zeros(3)):
-        """Model.rhs with the additions; `extra`: a further force at a place."""
+    def motion(self, x, cmd, extra, at=np.zeros(3), turn=np.zeros(3)):
+        """Model.rhs with the additions; `extra`: a further force at a place; `turn`: a further moment."""
         seen = x.copy()
         if self.play.any():
             seen[10:13] = self.surfaces(x)
@@ -132,7 +134,7 @@ class Hidden(Model):
             moment = moment + qs * lengths * self.cubic * angle ** 3
         h = np.array([2 * np.pi * self.rotor * x[8], 0.0, 0.0])
         moment = moment - np.cross(omega, h)
-        force, moment = force + extra, moment + np.cross(at, extra)
+        force, moment = force + extra, moment + np.cross(at, extra) + turn
         base = super().rhs(x, cmd)          # attitude, propeller, servos
         phi, theta = x[6:8]
         weight = G * np.array([-np.sin(theta), np.sin(phi) * np.cos(theta), np.cos(phi) * np.cos(theta)])

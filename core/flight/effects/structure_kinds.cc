@@ -64,7 +64,7 @@ std::vector<EffectKind> structure_kinds() {
                   "dy/dt + w^2 y = -a_y at the "
                   "tank, and m_s (w^2 y + 2 z w dy/dt) acts on the body there. (Dodge, NASA SP-106, "
                   "equivalent mechanical model.) "
-                  "The moment m_s g y of the displaced weight is left out.",
+                  "Its weight acts at y: L = -m_s y f_z, N = m_s y f_x of the specific force there.",
        .parameters = {size("mass_kg", "kg", "m_s, part of the aircraft's mass", 0.8, 2.5, 1e4),
                       shape("frequency_hz", "Hz", "w/(2 pi)", 0.8, 0.05, 10.0, 0.4, 1.2),
                       shape("damping", "1", "z", 0.05, 0.001, 1.0, 0.02, 0.08),

@@ -85,6 +85,53 @@ TEST(Slosh, ConservesMomentumAndEnergyOfFreeBodyAndLiquid) {
   EXPECT_NEAR(3.0 * (v + 0.4 * r + dx[state::slosh + 1]), -spring, 1e-12);
 }
 
+TEST(Slosh, OfATankTiltedAtRestLiesDownhillAndWeighsThere) {
+  // A body so heavy that the liquid does not move it, tilted by 20 degrees to the right, nose up by 5, on a stand that carries
+  // it: the specific force is minus gravity.
+  Aircraft a = fat();
+  a.ixx_kg_m2 *= 1e9;
+  a.iyy_kg_m2 *= 1e9;
+  a.izz_kg_m2 *= 1e9;
+  a.ixz_kg_m2 = 0.0;
+  a.additional.slosh = {
+      .mass_kg = 2.0, .frequency_hz = 0.5, .damping = 0.05, .forward_m = 0.4, .down_m = 0.1};
+  const FlightConstants k(a);
+  const double phi = 20.0 * kDegree, theta = 5.0 * kDegree, w = 2.0 * kPi * 0.5;
+  const std::array<double, 3> gravity = {-kGravity * std::sin(theta),
+                                         kGravity * std::sin(phi) * std::cos(theta),
+                                         kGravity * std::cos(phi) * std::cos(theta)};
+  std::array<double, 3> force{};
+  for (std::size_t i = 0; i < 3; ++i) force[i] = -gravity[i] / k.inverse_mass;
+  std::array<double, state::extended_size> x{}, dx{};
+  const double downhill = gravity[1] / (w * w);  // where the spring holds the weight
+  x[state::slosh] = downhill;
+  AdditionalDynamics(a, k, true).react(k, x, force, dx);
+  EXPECT_GT(downhill, 0.3);
+  EXPECT_NEAR(dx[state::slosh + 1], 0.0, 1e-6);  // the body's own motion, a billionth
+  EXPECT_NEAR(dx[state::rates] / k.inverse_xx, 2.0 * gravity[2] * downhill, 1e-5);  // to the right
+  EXPECT_NEAR(dx[state::rates + 2] / k.inverse_zz, -2.0 * gravity[0] * downhill, 1e-5);
+}
+
+TEST(EffectOrder, QuadraticDampingIsAShareOfWhatTheEffectsBeforeHaveLeft) {
+  const auto coefficient = [](std::initializer_list<std::string_view> effects) {
+    return with(effects, {}).aircraft.additional.quadratic_damping[0];
+  };
+  constexpr std::string_view damping = "quadratic_damping:axis=roll,ratio=0.5", linear = "cl_p:factor=0.8";
+  EXPECT_NEAR(coefficient({linear, damping}), 0.8 * coefficient({damping, linear}), 1e-12);
+  EXPECT_NE(coefficient({damping}), 0.0);
+}
+
+TEST(EffectOrder, AMisalignmentTurnsTheScaleErrorsGivenBeforeIt) {
+  constexpr std::string_view scale = "gyro_scale:axis=roll,error=0.1",
+                             turn = "gyro_misalignment:axis=yaw,angle_deg=6";
+  const Imu first = with({scale, turn}, {}).setup.imu, last = with({turn, scale}, {}).setup.imu;
+  const double c = std::cos(6.0 * kDegree), s = std::sin(6.0 * kDegree);
+  EXPECT_NEAR(first.misalignment_rad[0], 1.1 * s, 1e-12);
+  EXPECT_NEAR(first.scale_error[0], 1.1 * c - 1.0, 1e-12);
+  EXPECT_NEAR(last.misalignment_rad[0], s, 1e-12);
+  EXPECT_NEAR(last.scale_error[0], c - 1.0 + 0.1, 1e-12);
+}
+
 TEST(QuadraticDamping, IsItsShareOfTheLinearOneAtTheReferenceRate) {
   const ModifiedFlight modified = with({"quadratic_damping:axis=roll,ratio=0.5"}, {});
   const Trim trim = trim_level(fat());
