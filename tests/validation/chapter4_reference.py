@@ -18,7 +18,7 @@ import tempfile
 
 import numpy as np
 
-import coverage_reference
+import campaign_arrays
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -38,7 +38,7 @@ def metric(path, name):
 
 def check_bias(fatmc, folder):
     path, table = fly(fatmc, "bias", folder)
-    a = coverage_reference.arrays(path, "clean")
+    a = campaign_arrays.arrays(path, "clean")
     f = a["frequency_hz"][0]
     mean = {key: (a[f"{key}.ratio_re"] + 1j * a[f"{key}.ratio_im"]).mean(axis=0) for key in ("pitch", "yaw")}
     db = {key: 20 * np.log10(abs(value)) for key, value in mean.items()}
@@ -74,7 +74,7 @@ def check_bias(fatmc, folder):
 
 def check_variance(fatmc, folder):
     path, table = fly(fatmc, "variance", folder)
-    a = coverage_reference.arrays(path, "light turbulence")
+    a = campaign_arrays.arrays(path, "light turbulence")
     f = a["frequency_hz"][0]
     shape = (-1, len(f), 9)
     g = (a["g_re"] + 1j * a["g_im"]).reshape(shape)

@@ -19,7 +19,7 @@ import tempfile
 import numpy as np
 from scipy import stats
 
-import coverage_reference
+import campaign_arrays
 import lpm_reference
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -168,7 +168,7 @@ def compare(fatmc):
     with tempfile.TemporaryDirectory() as folder:
         database = f"{folder}/stability.db"
         run(fatmc, "run", "campaigns/stability/spec.toml", "--trials", "12", "--db", database)
-        a = coverage_reference.arrays(database)
+        a = campaign_arrays.arrays(database, "nonlinear")
         good = check_tables(fatmc, database, a)
         return 0 if check_trial(fatmc, folder, database, a, 5) and good else 1
 
@@ -182,7 +182,7 @@ def bounds(fatmc):
         path.write_text(spec.replace('"../', f'"{ROOT}/campaigns/').replace('"published', f'"{ROOT}/campaigns/coverage/published'),
                         encoding="utf-8")
         run(fatmc, "run", path, "--db", f"{folder}/calm.db")
-        a = coverage_reference.arrays(f"{folder}/calm.db")
+        a = campaign_arrays.arrays(f"{folder}/calm.db", "nonlinear")
     error = (a["error_re"] + 1j * a["error_im"]).reshape(-1, len(F), 9)
     estimate = error + true_response(fatmc).reshape(len(F), 9)
     inner = slice(N_E, len(F) - N_E)
@@ -209,7 +209,7 @@ def ssv(fatmc, x, radii):
 
 
 def lag(fatmc, database):
-    a = coverage_reference.arrays(database)
+    a = campaign_arrays.arrays(database, "nonlinear")
     truth = true_response(fatmc)
     estimate = (a["error_re"] + 1j * a["error_im"]).reshape(-1, len(F), 3, 3) + truth
     k = 0.1 * np.eye(3)
