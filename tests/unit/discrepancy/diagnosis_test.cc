@@ -164,7 +164,7 @@ TEST_F(DiagnosisOfARecord, TheLawWithTwiceTheTurbulenceIsTheScatterOfOtherFlight
   }
   std::nth_element(ratios.begin(), ratios.begin() + 30, ratios.end());
   EXPECT_GT(ratios[30], 2.0) << "of p, q, r at 40 lines: gusts stand above the gyros' noise";
-  EXPECT_NEAR(by_law / static_cast<double>(rows.size()) / ratios[30], 1.0, 0.15);
+  EXPECT_NEAR(by_law / static_cast<double>(rows.size()) / ratios[30], 1.0, 0.1);
   // An estimate that reads one feature has its deviation, with what 16 flights leave uncertain (four standard errors).
   Eigen::MatrixXd one = Eigen::MatrixXd::Zero(1, comparison.size());
   one(0, layout.blocks[10].first) = 1.0;
