@@ -13,6 +13,9 @@ inline constexpr std::string_view kPast = "past", kFuture = "future", kOrder = "
 inline constexpr std::string_view kState = "state";   ///< a ModelState
 inline constexpr std::string_view kAgreement = "d1";  ///< overall index of agreement, H (11); 0 without
 inline constexpr std::string_view kRms = "j_rms";     ///< H (9), ft/s, deg/s, deg; 0 without
+inline constexpr std::string_view kTheil = "theil";   ///< Theil's coefficient in the same units; 0 without
+/// kOutputs values a model: d1 of each output (H 10); 0 without.
+inline constexpr std::string_view kOutputAgreement = "d1_outputs";
 /// The same of the roll rate alone in the first lateral multistep (H Figs. 2, 3); deg/s.
 inline constexpr std::string_view kRollAgreement = "roll_d1", kRollRms = "roll_rms";
 inline constexpr std::string_view kNorm = "norm";  ///< spectral norm of A_K^p; 0 without

@@ -277,7 +277,9 @@ Result<std::vector<TableRow>> tables(const CampaignSpec& spec, const RowSource& 
     if (!own) return fail(own.error());
     const auto decoded = decode_candidates(*own);
     if (!decoded) return fail(decoded.error());
-    const ModelTable table = read_models(cell, rows);
+    const auto read = read_models(cell, rows);
+    if (!read) return fail(read.error());
+    const ModelTable& table = *read;
     if (table.models.empty()) continue;
     const auto judged = judge_models(table, decoded->truth);
     if (!judged) return fail(judged.error());

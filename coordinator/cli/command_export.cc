@@ -74,7 +74,13 @@ Exit run_export(const ExportOptions& options) {
   if (!own) return report(own.error());
   const auto spec = candidates::decode_candidates(*own);
   if (!spec) return report(spec.error());
-  const ModelTable table = candidates::read_models(*cell, reader->rows());
+  const auto read = candidates::read_models(*cell, reader->rows());
+  if (!read) {
+    Error error = read.error();
+    error.file = options.database;
+    return report(error);
+  }
+  const ModelTable& table = *read;
   const Result<std::size_t> model = chosen_model(table, *spec, options.model);
   if (!model) return report(model.error());
   const ModelRow& row = table.models[*model];

@@ -109,6 +109,19 @@ assert all(c["norm"] <= three["limit"] for c in three["candidates"])
 for output in three["outputs"]:
     assert output["median_variance_accounted_for"] > 99.0, output
     assert 0.0 <= output["covered_percent"] <= 100.0 and output["spread_rms"] < output["error_rms"], output
+# Weights of the overall d1 (H 11): with the first output alone the best of an order need not be the best of both.
+run("select", path("open.csv"), "--pasts", "10,5,25", "--orders", "3,3", "--hold-back", "0.4", "--weights", "2,0", "-o",
+    path("first"))
+with open(path("first/candidates.json"), encoding="utf-8") as f:
+    weighted = json.load(f)["orders"][0]["candidates"][0]
+run("identify", path("open.csv"), "--past", str(weighted["past"]), "--future", str(weighted["future"]), "--order", "3",
+    "--hold-back", "0.4", "--weights", "2,0", "-o", path("again"))
+with open(path("again/model.json"), encoding="utf-8") as f:
+    validation = json.load(f)["validation"][0]
+assert abs(validation["overall_agreement"] - validation["outputs"][0]["agreement"]) < 1e-12, validation
+assert abs(validation["overall_agreement"] - weighted["agreement"]) < 1e-6, (validation, weighted)
+refused(["--weights", "y1, y2"], "select", path("open.csv"), "--hold-back", "0.4", "--weights", "1", "-o", path("none"))
+refused(["--weights", "at least one"], "identify", path("open.csv"), "--weights", "0,0", "-o", path("none"))
 refused(["--hold-back"], "select", path("open.csv"), "-o", path("none"))
 refused(["--pasts"], "select", path("open.csv"), "--hold-back", "0.4", "--pasts", "30,5,20", "-o", path("none"))
 assert not os.path.exists(path("none"))
