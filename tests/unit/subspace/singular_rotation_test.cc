@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
 #include <Eigen/SVD>
 
 #include "core/random/random_stream.h"
@@ -16,8 +17,10 @@ Eigen::MatrixXd normal(Eigen::Index rows, Eigen::Index columns, std::uint32_t se
 
 TEST(SingularRotation, IsThatOfTheFullDecomposition) {
   for (const Eigen::Index size : {1, 7, 48, 49, 130}) {  // narrower and wider than the band
-    Eigen::MatrixXd triangle = normal(size, size, 1), rhs = normal(size, 3, 2);
-    const Eigen::MatrixXd upper = triangle.triangularView<Eigen::Upper>();
+    // A factor of tall data: well conditioned, so that its singular vectors are determined.
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(normal(2 * size, size, 1));
+    const Eigen::MatrixXd upper = qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
+    Eigen::MatrixXd triangle = upper, rhs = normal(size, 3, 2);
     const Eigen::BDCSVD<Eigen::MatrixXd> svd(upper, Eigen::ComputeFullU);
     const Eigen::MatrixXd expected = svd.matrixU().transpose() * rhs;
     Eigen::VectorXd s;
