@@ -124,7 +124,7 @@ Result<LeadingTriplets> leading_triplets(const Eigen::Ref<const Eigen::MatrixXd>
       const LeadingTriplets cut = triplets(space, options.kept);
       space.take(cut.u, cut.w, cut.s);
     }
-    space.add(directions);
+    if (directions.cols() > 0) space.add(directions);
   }
   return fail("the leading singular directions did not converge (residual " + significant(best, 2) +
               " of the largest)");

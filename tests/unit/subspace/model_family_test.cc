@@ -256,6 +256,22 @@ TEST(LeadingSubspace, AStartFromTheLeadingBlockSavesRestartsAndChangesNothing) {
   EXPECT_LT((warm->s.head(10) - cold->s.head(10)).norm(), 1e-13 * cold->s(0));
 }
 
+TEST(LeadingSubspace, AChainOfGrowingBlocksDoesNotDrift) {
+  const Eigen::MatrixXd triangle = slow_triangle(520, 0.998);
+  LeadingTriplets chained;
+  for (Eigen::Index size = 330; size <= 520; size += 10)
+    chained = *leading_triplets(triangle.topLeftCorner(size, size), 12, chained);
+  LeadingOptions full;
+  full.dense_size = 1000;
+  const auto decomposed = leading_triplets(triangle, 12, {}, full);
+  ASSERT_TRUE(decomposed.has_value());
+  EXPECT_GT(chained.rounds, 0);
+  EXPECT_LT((chained.s.head(12) - decomposed->s.head(12)).norm(), 1e-13 * decomposed->s(0));
+  const Eigen::MatrixXd u = chained.u.leftCols(12), w = chained.w.leftCols(12);
+  const Eigen::MatrixXd full_triangle = triangle.triangularView<Eigen::Upper>();
+  EXPECT_LT((full_triangle * u - w * chained.s.head(12).asDiagonal()).norm(), 1e-13 * chained.s(0));
+}
+
 TEST(LeadingSubspace, SmallSingularValuesKeepTheirDigits) {
   // A diagonal matrix: its values are known. A Gram matrix would lose all below 1e-8 of the largest.
   Eigen::MatrixXd diagonal = Eigen::MatrixXd::Zero(400, 400);
