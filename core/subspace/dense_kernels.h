@@ -36,16 +36,7 @@ void solve_triangle(const Eigen::Ref<const Eigen::MatrixXd>& triangle, Eigen::Re
 /// Columns of `a` become orthonormal, spanning what they spanned. More rows than columns.
 void orthonormalise(Eigen::MatrixXd& a);
 
-struct ThinSvd {
-  Eigen::VectorXd s;  ///< descending
-  Eigen::MatrixXd v;  ///< right singular vectors, columns x min(rows, columns)
-};
-/// Singular values and right vectors; false where the iteration fails. `a` is destroyed.
-bool right_singular(Eigen::MatrixXd& a, ThinSvd& out);
-
-/// Singular values of the upper triangle of `a`, and rhs <- (left singular vectors)^T rhs; no vector is
-/// formed. `a` is destroyed, below the diagonal too. False where the iteration fails.
-bool rotate_to_singular_directions(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Ref<Eigen::MatrixXd> rhs,
-                                   Eigen::VectorXd& s);
+/// a = u diag(s) v^T of a square matrix, s descending; false where the iteration fails. `a` is destroyed.
+bool singular_decomposition(Eigen::MatrixXd& a, Eigen::MatrixXd& u, Eigen::VectorXd& s, Eigen::MatrixXd& v);
 
 }  // namespace fatmc

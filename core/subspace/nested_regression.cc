@@ -6,6 +6,7 @@
 #include "core/base/check.h"
 #include "core/subspace/dense_kernels.h"
 #include "core/subspace/predictor_regression.h"
+#include "core/subspace/singular_rotation.h"
 
 namespace fatmc {
 namespace {
