@@ -76,17 +76,18 @@ void add_order_claims(const std::map<int, OrderAccuracy>& orders, const CellTabl
       if (d1 > largest) largest = d1, best = order;
     }
   }
-  TableRow majority = out.row("Fig. 4", name, "adequate models (print: the majority)", "%", kNone, all);
+  TableRow majority =
+      out.claim("Fig. 4", name, "adequate models (print: the majority)", "%", kNone, all, 50.0);
   fill_share(majority, adequate, all, all);
   majority.why = kRelatedModels;
   judge_lower_bound(majority, "the noise of the synthetic flights was chosen beforehand");
   out.add(std::move(majority));
-  out.add_claim(out.row("Fig. 4", name, "order of the largest d1 (print: above 15)", "", best, all),
+  out.add_claim(out.claim("Fig. 4", name, "order of the largest d1 (print: above 15)", "", best, all, 15.0),
                 best > 15, "one flight test: no interval");
   const auto change = [&](const char* quantity, double p, bool rises) {
     const double difference =
         quantile(orders.rbegin()->second.agreement, p) - quantile(orders.begin()->second.agreement, p);
-    out.add_claim(out.row("Fig. 4", name, quantity, "", difference, all),
+    out.add_claim(out.claim("Fig. 4", name, quantity, "", difference, all, 0.0),
                   rises ? difference > 0.0 : difference < 0.0, "one flight test: no interval");
   };
   change("median d1, highest order less lowest (print: rises)", 0.5, true);
@@ -121,16 +122,16 @@ void add_accuracy_tables(const ModelTable& table, const std::vector<Selection>& 
 }
 
 void add_roll_accuracy(const ModelTable& table, const Selected& selected, const CellTables& out) {
-  for (const char* printed : {"0.82", "1.77"}) {
-    const double rms = std::stod(printed);
+  for (const RollModel& printed : kRollModels) {
     std::vector<double> near;
     for (const std::size_t i : selected.all) {
-      if (std::abs(table.models[i].roll_rms / rms - 1.0) <= 0.1)
-        near.push_back(table.models[i].roll_agreement);
+      const ModelRow& model = table.models[i];
+      if (std::abs(model.roll_rms / printed.rms_deg_s - 1.0) <= 0.1) near.push_back(model.roll_agreement);
     }
-    TableRow row = out.row("Fig. 3", "roll rate of the first lateral multistep",
-                           "d1 of models whose J_rms is within 10 % of " + std::string(printed) + " deg/s",
-                           "", near.empty() ? kNone : quantile(near, 0.5), near.size());
+    TableRow row = out.claim(
+        "Fig. 3", "roll rate of the first lateral multistep",
+        "d1 of models whose J_rms is within 10 % of " + significant(printed.rms_deg_s, 3) + " deg/s", "",
+        near.empty() ? kNone : quantile(near, 0.5), near.size(), printed.agreement);
     if (near.empty()) {
       out.add_claim(std::move(row), false, "no model has such an rms error");
       continue;

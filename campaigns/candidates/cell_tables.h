@@ -36,6 +36,15 @@ class CellTables {
     return row;
   }
 
+  /// The same for what the text of H claims, most often without a figure: `printed` stands for it where the cell is compared with
+  /// print.
+  TableRow claim(const std::string& table, const std::string& name, const std::string& quantity,
+                 const std::string& unit, double value, std::uint64_t n, double printed) const {
+    TableRow out = row(table, name, quantity, unit, value, n);
+    if (!published_.empty()) out.published = printed;
+    return out;
+  }
+
   /// The same with more behind the names of its rows.
   [[nodiscard]] CellTables with(const std::string& more) const { return {more + suffix_, published_, out_}; }
 

@@ -15,7 +15,7 @@ namespace fatmc::candidates {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr double kPrintedGap = 0.95 - 0.91;  // d1 of the two models of H Fig. 2
+constexpr double kPrintedGap = kRollModels[0].agreement - kRollModels[1].agreement;
 
 /// Of those analysed, the model whose d1 of the roll rate is nearest to `wanted`.
 std::optional<std::size_t> nearest_roll(const ModelTable& table, const std::vector<std::size_t>& set,

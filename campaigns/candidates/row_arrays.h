@@ -54,6 +54,13 @@ inline constexpr std::array<TrackedMode, 5> kTrackedModes = {
      {"lead-lag, SCAS", 1, 0.55, 0.03, -1},
      {"roll/flap, SCAS and filter", 2, 0.43, 0.58, -1}}};
 
+/// The order whose selection H shows in Figs. 5 to 7, and the two models of its Figs. 2 and 3.
+inline constexpr int kShownOrder = 12;
+struct RollModel {
+  double rms_deg_s, agreement;
+};
+inline constexpr std::array<RollModel, 2> kRollModels = {{{0.82, 0.95}, {1.77, 0.91}}};
+
 /// What is judged by CS-27 and ADS-33: a vehicle's response of an output to an input.
 struct JudgedResponse {
   const char* name;

@@ -15,8 +15,8 @@ std::uint64_t with_resonance(const JudgedModels& models, const std::vector<std::
   }));
 }
 
-void add_artifacts(const JudgedModels& models, const Selected& selected, const std::string& name,
-                   const CellTables& out) {
+void add_artifacts(const JudgedModels& models, const Selected& selected, int order, const CellTables& out) {
+  const std::string name = "n = " + std::to_string(order);
   const auto row_of = [&](const char* which, const std::vector<std::size_t>& set) {
     const auto judged = models.judged(set);
     TableRow row = out.row("Section 4", name + which, "models with a resonance that the truth does not have",
@@ -32,8 +32,9 @@ void add_artifacts(const JudgedModels& models, const Selected& selected, const s
   out.add(std::move(by_agreement));
   out.add(row_of(", norm below the limit", selected.accepted));
   if (!selected.best.empty() && models.of(selected.best.front()) != nullptr) {
-    TableRow first = out.row("Section 4", name, "resonances of the best model (print: one at least)", "",
-                             models.of(selected.best.front())->artifacts, 1);
+    TableRow first =
+        out.claim("Section 4", name, "resonances of the best model (print: one at least)", "",
+                  models.of(selected.best.front())->artifacts, 1, order == kShownOrder ? 1.0 : kNone);
     out.add_claim(std::move(first), first.value > 0.0, "one model: no interval");
   }
   TableRow row = row_of(", candidates", selected.candidates);
@@ -49,8 +50,8 @@ void add_artifacts(const JudgedModels& models, const Selected& selected, const s
   out.add(std::move(row));
 }
 
-void add_pasts(const ModelTable& table, const Selected& selected, const std::string& name,
-               const CellTables& out) {
+void add_pasts(const ModelTable& table, const Selected& selected, int order, const CellTables& out) {
+  const std::string name = "n = " + std::to_string(order);
   constexpr double kLow = 250.0, kHigh = 700.0;  // H 4.3
   std::vector<double> past;
   for (const std::size_t i : selected.candidates) past.push_back(table.models[i].past);
@@ -71,7 +72,8 @@ void add_pasts(const ModelTable& table, const Selected& selected, const std::str
   };
   add("smallest p of the candidates", low);
   add("largest p of the candidates", high);
-  TableRow row = out.row("Section 4", name, "candidates with p from 250 to 700", "%", kNone, past.size());
+  TableRow row = out.claim("Section 4", name, "candidates with p from 250 to 700", "%", kNone, past.size(),
+                           order == kShownOrder ? 100.0 : kNone);
   const auto inside = static_cast<std::uint64_t>(
       std::count_if(past.begin(), past.end(), [&](double p) { return p >= kLow && p <= kHigh; }));
   fill_share(row, inside, past.size(), std::max<std::uint64_t>(selected.best.size(), 1));
@@ -114,8 +116,8 @@ void add_selection_tables(const JudgedModels& models, const Selection& selection
   };
   count("models with norm below the limit", selected.accepted);
   count("candidates", selected.candidates);
-  add_artifacts(models, selected, name, out);
-  add_pasts(models.table, selected, name, out);
+  add_artifacts(models, selected, selection.order, out);
+  add_pasts(models.table, selected, selection.order, out);
   add_medians(models.table, selected, name, out);
 }
 

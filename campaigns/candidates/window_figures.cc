@@ -73,8 +73,12 @@ StudyFigure accuracy_figure(const CellData& cell, const Selected& selected, int 
   constexpr double degrees = 57.29577951308232;
   if (cell.flown.multisteps.size() > kRollManeuver)
     add_size_curves(roll, cell.flown.multisteps[kRollManeuver].outputs.col(kRollRate) * degrees);
-  roll.marks.push_back(
-      plot::Points{"the two models of H", {0.82, 1.77}, {0.95, 0.91}, plot::Hue::red, false, 3.0});
+  roll.marks.push_back(plot::Points{"the two models of H",
+                                    {kRollModels[0].rms_deg_s, kRollModels[1].rms_deg_s},
+                                    {kRollModels[0].agreement, kRollModels[1].agreement},
+                                    plot::Hue::red,
+                                    false,
+                                    3.0});
   add_ratings(roll, lowest_of(cell.table, selected.all, [](const ModelRow& m) { return m.roll_agreement; }));
   all.title = "all outputs, all multisteps";
   all.x = {"J_rms, ft/s, deg/s, deg", plot::Scale::logarithmic, {}, {}};
@@ -148,14 +152,15 @@ StudyFigure window_figure(const CellData& cell, const Selection& selection, cons
   for (const bool norm : {true, false}) {
     plot::Panel panel;
     panel.x = {"past window p", plot::Scale::linear, plot::Range{0.0, 1.03 * longest}, {}};
-    panel.y = {
-        norm ? "norm of A_K^p" : "overall d1", norm ? plot::Scale::logarithmic : plot::Scale::linear, {}, {}};
+    panel.title =
+        norm ? "spectral norm of A_K^p" : "overall d1";  // beside the axis it would run into small norms
+    panel.y = {"", norm ? plot::Scale::logarithmic : plot::Scale::linear, {}, {}};
     const auto y = [norm](const ModelRow& m) { return norm ? m.norm : m.agreement; };
     panel.marks.push_back(scatter("all", cell.table, selected.all, plot::Hue::blue, past, y));
     panel.marks.push_back(scatter("best by d1", cell.table, selected.best, plot::Hue::red, past, y));
     panel.marks.push_back(scatter("candidates", cell.table, selected.candidates, plot::Hue::orange, past, y));
     if (norm) {
-      panel.y.range = plot::Range{std::max(0.5 * smallest_norm, 1e-16), 3.0};
+      panel.y.range = plot::Range{std::max(0.5 * smallest_norm, 1e-30), 3.0};
       panel.marks.push_back(plot::Rule{"limit of the norm: " + significant(selected.limit, 2), selected.limit,
                                        false, plot::Hue::grey, plot::Dash::dashed});
     }

@@ -65,6 +65,20 @@ refused(["--model", "is not kept"], "export", db, "--model", "60,40,13", "-o", p
 refused(["--cell", "open loop"], "export", db, "--cell", "hover", "-o", path("no.toml"))
 assert not os.path.exists(path("no.toml"))
 
+# The flight test as records, and a model of the study beside one of them.
+run("export", db, "--records", path("flights"))
+assert sorted(os.listdir(path("flights")))[:2] == ["multistep-1.csv", "multistep-1.toml"] and len(os.listdir(path("flights"))) == 32
+sweep = np.genfromtxt(path("flights/sweep-3.csv"), delimiter=",", names=True)
+assert sweep.dtype.names == ("delta_x", "delta_y", "delta_p", "delta_0", "u", "v", "w", "p", "q", "r", "phi", "theta")
+assert len(sweep) == 2485 and 5.0 < abs(sweep["delta_y"]).max() < 15.0  # 10 % at most, and the pulses that hold
+run("diagnose", "--model", path("candidate.toml"), "--record", path("flights/sweep-3.csv"), "--holdout",
+    path("flights/sweep-4.csv"), "-o", path("diagnosis"))
+with open(path("diagnosis/diagnosis.json"), encoding="utf-8") as f:
+    diagnosis = json.load(f)
+assert diagnosis["verdict"] in ("named", "class", "unknown") and len(diagnosis["incoherent"]) == 8, diagnosis
+run("diagnose", "--model", "campaigns/models/actfhs_60kt.toml", "--record", path("flights/sweep-3.csv"), "-o", path("truth"))
+refused(["-o", "--records"], "export", db)
+
 # Identification in open loop.
 random = np.random.default_rng(1)
 a = np.array([[0.9, 0.3, 0.0], [-0.3, 0.9, 0.0], [0.0, 0.1, 0.7]]) * 0.95
