@@ -81,21 +81,31 @@ void append_rows(Eigen::Ref<Eigen::MatrixXd> r, Eigen::Ref<Eigen::MatrixXd> rows
   append_rows(r, none, rows, rest);
 }
 
-void triangularise(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Index columns) {
-  FATMC_CHECK(a.rows() >= columns && a.cols() >= columns, "triangularise: shape");
-  const int m = as_int(a.rows()), n = as_int(columns), k = as_int(a.cols() - columns),
-            lda = leading(a.outerStride(), m);
+void triangularise(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Ref<Eigen::MatrixXd> rhs) {
+  FATMC_CHECK(a.rows() >= a.cols() && a.rows() == rhs.rows(), "triangularise: shapes");
+  const int m = as_int(a.rows()), n = as_int(a.cols()), k = as_int(rhs.cols()),
+            lda = leading(a.outerStride(), m), ldb = leading(rhs.outerStride(), m);
   std::vector<double> tau(static_cast<std::size_t>(n));
   with_workspace([&](double* work, const int* length,
                      int* info) { dgeqrf_(&m, &n, a.data(), &lda, tau.data(), work, length, info); },
                  "dgeqrf");
-  if (k == 0) return;
-  double* rest = a.data() + columns * a.outerStride();
   with_workspace(
       [&](double* work, const int* length, int* info) {
-        dormqr_("L", "T", &m, &k, &n, a.data(), &lda, tau.data(), rest, &lda, work, length, info);
+        dormqr_("L", "T", &m, &k, &n, a.data(), &lda, tau.data(), rhs.data(), &ldb, work, length, info);
       },
       "dormqr");
+}
+
+Eigen::MatrixXd zero_triangle(Eigen::Index size) {
+  Eigen::MatrixXd out(size, size);
+  for (Eigen::Index j = 0; j < size; ++j) out.col(j).head(j + 1).setZero();
+  return out;
+}
+
+Eigen::MatrixXd upper_triangle(const Eigen::Ref<const Eigen::MatrixXd>& of) {
+  Eigen::MatrixXd out(of.cols(), of.cols());
+  for (Eigen::Index j = 0; j < of.cols(); ++j) out.col(j).head(j + 1) = of.col(j).head(j + 1);
+  return out;
 }
 
 void add_product(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::Ref<const Eigen::MatrixXd>& b,
