@@ -67,6 +67,7 @@ StudyFigure level_figure(const CellData& cell, const Selection& selection, const
   plot::Panel panel;
   panel.x = {"real part, 1/s", plot::Scale::linear, {}, {}};
   panel.y = {"imaginary part, rad/s", plot::Scale::linear, {}, {}};
+  std::vector<plot::Points> truths;
   double highest = 1.0, left = -1.0, right = 0.2;
   const std::size_t first = roll ? 2 : 0;
   for (const std::size_t k : {first, first + 1}) {
@@ -83,8 +84,9 @@ StudyFigure level_figure(const CellData& cell, const Selection& selection, const
     own.filled = false;
     own.radius_px = k == first ? 5.0 : 3.5;
     panel.marks.push_back(std::move(points));
-    panel.marks.push_back(std::move(own));
+    truths.push_back(std::move(own));
   }
+  for (plot::Points& own : truths) panel.marks.push_back(std::move(own));  // above the candidates
   add_boundaries(panel, 1.05 * highest);
   panel.x.range = plot::Range{1.05 * left, 1.2 * right};
   panel.y.range = plot::Range{0.0, 1.05 * highest};

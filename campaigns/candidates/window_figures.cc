@@ -98,9 +98,10 @@ StudyFigure accuracy_figure(const CellData& cell, const Selected& selected, int 
   figure.columns = 2;
   figure.panels = {std::move(roll), std::move(all)};
   return {"Fig. 3" + cell.suffix,
-          "Every model of the order. Green: a roll rate that is right but for its size. H's two models "
-          "repeat another "
-          "record: an rms error scales with the record, d1 does not.",
+          "Every model of the order, thinned evenly beyond " + std::to_string(kMostPoints) +
+              ". Green: a roll rate that is right but for its size. H's two models "
+              "repeat another "
+              "record: an rms error scales with the record, d1 does not.",
           std::move(figure)};
 }
 
