@@ -27,7 +27,8 @@ void dbdsqr_(const char* uplo, const int* n, const int* ncvt, const int* nru, co
 namespace fatmc {
 namespace {
 
-constexpr int kBand = 48;  // superdiagonals: wide enough for products of matrices, narrow for the rotations
+// Superdiagonals. Above 32, below which LAPACK applies reflections one by one; the rotations cost in proportion.
+constexpr int kBand = 48;
 
 /// What the reflections of one block act on.
 struct Reflections {
