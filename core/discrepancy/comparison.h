@@ -49,6 +49,8 @@ class Comparison {
   /// Flexible modes on a fine grid, and their white signatures.
   [[nodiscard]] const std::vector<Atom>& resonances() const { return records_.front().basis->resonances; }
   [[nodiscard]] const Eigen::MatrixXd& resonance_atoms() const { return resonance_atoms_; }
+  /// White changes by higher_moments() (moment_filters.h), a column each; zero where one cannot be flown on every record.
+  [[nodiscard]] const Eigen::MatrixXd& moment_atoms() const { return moment_atoms_; }
 
   /// Mean change of the features by each set of effects, white, a column each, from `flights` flights with the baseline's
   /// noise: over those that do not leave the model, since the record did not; a set of which half cannot be flown on a record
@@ -80,7 +82,7 @@ class Comparison {
   int threads_;
   std::vector<Eigen::Index> first_;
   Eigen::VectorXd discrepancy_;
-  Eigen::MatrixXd atoms_, resonance_atoms_, white_baseline_;
+  Eigen::MatrixXd atoms_, resonance_atoms_, moment_atoms_, white_baseline_;
   std::vector<EffectCurve> curves_;
   Thresholds thresholds_;
 };

@@ -8,6 +8,7 @@
 #include "core/discrepancy/effect_knowledge.h"
 #include "core/discrepancy/effect_selection.h"
 #include "core/discrepancy/effect_size.h"
+#include "core/discrepancy/level_probe.h"
 #include "core/stats/intervals.h"
 
 namespace fatmc {
@@ -142,11 +143,13 @@ Diagnosis diagnose(const Comparison& comparison, const Comparison* holdout, cons
   out.evidence.leading = leading_effect(comparison, options);
   out.evidence.energy = best.fit.cost;
   out.evidence.local = comparison.local_score(best.fit.residual);
-  const bool detected = out.evidence.scan > limit.scan || out.evidence.energy > limit.energy ||
-                        out.evidence.local > limit.local;
+  const bool found = out.evidence.scan > limit.scan || out.evidence.energy > limit.energy ||
+                     out.evidence.local > limit.local;
+  const LevelProbe first = probe_level(comparison, best, LevelProbe::kNothing, 0.0);
+  const bool detected = found || first.failed();
 
   std::vector<Explanation> rivals;
-  if (detected) {
+  if (found) {
     best = searched(selection, options, false, rivals);
     // Nothing close to the leading candidate explains it: others have their turn before the answer is "unknown".
     if (!best.adequate) {
@@ -156,11 +159,17 @@ Diagnosis diagnose(const Comparison& comparison, const Comparison* holdout, cons
   }
 
   if (!best.fit.effects.empty()) out.effects = found_effects(selection, best);
+  const LevelProbe level = best.fit.effects.empty() ? first
+                                                    : probe_level(comparison, best, LevelProbe::kNamed,
+                                                                  kResolution * selection.excess());
+  if (level.failed()) out.notes.push_back(level.statement());
+  out.evidence.level = level.score;
+  out.evidence.level_limit = level.limit;
   // What was detected and no effect accounts for is unknown, even where energy and groups alone would not show it.
   if (best.fit.effects.empty()) {
     out.verdict = detected ? Verdict::unknown : Verdict::none;
   } else {
-    out.verdict = best.adequate ? Verdict::named : Verdict::unknown;
+    out.verdict = best.adequate && !level.failed() ? Verdict::named : Verdict::unknown;
   }
   if (out.verdict == Verdict::named && best.fit.effects.size() == 1) {
     const std::vector<Explanation> equals = equals_of(best, std::move(rivals));

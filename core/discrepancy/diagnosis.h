@@ -9,6 +9,7 @@
 //    dropped (backward); each is tried against its rivals (swap).
 // 3. Judge: the residual must be what chance gives with the effects, the error of the mean over few flights included, but for
 //    kResolution of the discrepancy. Else the answer is unknown.
+//    Nor may it show that a value depends on level (level_probe.h): a derivative that grows with the motion is not that derivative.
 // 4. Class: rivals whose fits are as good to within kClassGain.
 #pragma once
 
@@ -50,6 +51,8 @@ struct Evidence {
   double scan = 0.0, energy = 0.0, local = 0.0;                 ///< of the discrepancy
   double scan_left = 0.0, energy_left = 0.0, local_left = 0.0;  ///< of what the effects leave
   std::string leading;                                          ///< effect with the largest GLR
+  double level = 0.0,
+         level_limit = 0.0;  ///< score of level_probe.h with the answer's effects, and what it must exceed
 };
 
 struct Diagnosis {

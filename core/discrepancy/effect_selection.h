@@ -34,6 +34,8 @@ class EffectSelection {
   /// `base` with one more effect: the leading candidates fitted together with it, the best explanation first; only those whose
   /// likelihood along the dictionary is close to the best one's, or with `far` half of it.
   [[nodiscard]] std::vector<Explanation> extended(const Explanation& base, bool far) const;
+  /// Energy of the discrepancy above the floor.
+  [[nodiscard]] double excess() const { return excess_; }
   [[nodiscard]] double scan_threshold() const { return comparison_.thresholds().scan; }
   /// What a further effect must gain; the first has passed the threshold of the scan when something was detected.
   [[nodiscard]] double required_gain(const Effect& effect, const FittedLaw& law, bool first) const;

@@ -10,6 +10,8 @@
 #include "core/discrepancy/effect_knowledge.h"
 #include "core/discrepancy/effect_size.h"
 #include "core/discrepancy/fitted_law.h"
+#include "core/discrepancy/level_probe.h"
+#include "core/discrepancy/moment_filters.h"
 #include "core/discrepancy/resonance.h"
 #include "core/discrepancy/separability.h"
 #include "core/signal/multisine.h"
@@ -24,7 +26,9 @@ struct Bench {
   Bench()
       : layout(*FeatureLayout::create(experiment(), true, true, true)),
         grid(*LpmGrid::create(experiment(), {}, 3)),
-        model(fat(), setup(), {}, reference(), FeatureExtractor(layout, setup().gain)) {
+        model(
+            with_moment_filters({fat(), setup(), {}, reference(), FeatureExtractor(layout, setup().gain)})) {
+    layout = model.extractor().layout();
     options.flights = 300;
     options.threads = 2;
     // Every test is a process that learns the law anew: kinds with long grids, and some that are weak here, are left out.
