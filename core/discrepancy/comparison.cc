@@ -113,6 +113,12 @@ Comparison::Comparison(std::vector<ComparedRecord> records, int threads)
   thresholds_ = combine(records_, atoms_, first_);
 }
 
+Matrix Comparison::atom_products() const {
+  Matrix out = records_.front().basis->atom_products;
+  for (std::size_t i = 1; i < records_.size(); ++i) out += records_[i].basis->atom_products;
+  return out;
+}
+
 Eigen::Index Comparison::first_group(std::size_t record) const {
   Eigen::Index out = 0;
   for (std::size_t i = 0; i < record; ++i) out += static_cast<Eigen::Index>(records_[i].basis->groups.size());

@@ -44,6 +44,8 @@ class Comparison {
   [[nodiscard]] const Eigen::VectorXd& discrepancy() const { return discrepancy_; }
   /// Signatures, white, a column each; scaled to nothing.
   [[nodiscard]] const Eigen::MatrixXd& atoms() const { return atoms_; }
+  /// atoms()^T atoms().
+  [[nodiscard]] Eigen::MatrixXd atom_products() const;
   /// Changes along the sizes of the candidates with one parameter.
   [[nodiscard]] const std::vector<EffectCurve>& curves() const { return curves_; }
   /// Flexible modes on a fine grid, and their white signatures.

@@ -165,6 +165,9 @@ std::vector<FeatureGroup> feature_groups(const FeatureLayout& layout) {
 
 void ComparisonBasis::complete() {
   atoms = law.whiten(layout, dictionary.differences);
+  atom_products.setZero(atoms.cols(), atoms.cols());
+  atom_products.selfadjointView<Eigen::Lower>().rankUpdate(atoms.transpose());
+  atom_products.triangularView<Eigen::StrictlyUpper>() = atom_products.transpose();
   moment_atoms = law.whiten(layout, moment_differences);
   white_baseline = law.whiten(layout, baseline.colwise() - law.mean);
   resonances.clear();

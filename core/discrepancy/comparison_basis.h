@@ -65,7 +65,8 @@ struct ComparisonBasis {
   Eigen::VectorXd
       baseline_variance;  ///< of every group, mean over its features: 1, less where a floor stands for it
   Dictionary dictionary;
-  Eigen::MatrixXd atoms;  ///< signatures, whitened by the law
+  Eigen::MatrixXd atoms;          ///< signatures, whitened by the law
+  Eigen::MatrixXd atom_products;  ///< atoms^T atoms
   /// Flexible modes on a fine grid (resonance.h): effect, index of its variant, white signature.
   std::vector<Atom> resonances;
   Eigen::MatrixXd resonance_atoms;

@@ -53,6 +53,7 @@ std::vector<Direction> directions(const Comparison& comparison, const Explanatio
   for (std::size_t i = 1; i < comparison.records().size(); ++i) {
     const Eigen::Index first = comparison.first_row(i), rows = comparison.records()[i].basis->layout.size;
     for (std::size_t p = 0; p < free.size(); ++p) {
+      if (static_cast<std::size_t>(free[p].effect) < e.nuisances) continue;
       const Effect& effect = e.fit.effects[static_cast<std::size_t>(free[p].effect)];
       const EffectParameter& kind = effect.kind().parameters[static_cast<std::size_t>(free[p].parameter)];
       Direction one{effect, static_cast<int>(i), Vector::Zero(comparison.size())};

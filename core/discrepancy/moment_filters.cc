@@ -45,8 +45,9 @@ std::vector<Eigen::Matrix3cd> inverse_noise(const std::vector<Spectrum>& flights
   for (const int k : wanted) {
     Eigen::Matrix3cd sum = Eigen::Matrix3cd::Zero();
     int bins = 0;
-    const int last = std::min(count - 1, k + MomentFilters::kHalfWidth);
-    for (int m = std::max(1, k - MomentFilters::kHalfWidth); m <= last; ++m) {
+    const int width = std::clamp(k / 4, MomentFilters::kLeastWidth, MomentFilters::kMostWidth);
+    const int last = std::min(count - 1, k + width);
+    for (int m = std::max(1, k - width); m <= last; ++m) {
       if (m % periods == 0) continue;
       sum += power[static_cast<std::size_t>(m)];
       ++bins;
@@ -84,7 +85,7 @@ MomentFilters make_filters(const ModelSimulator& model) {
   const RealDft dft(experiment.period_samples * experiment.periods);
   const int last = std::min(dft.size() / 2, static_cast<int>(MomentFilters::kBandFactor *
                                                              experiment.lines.back() * experiment.periods) +
-                                                MomentFilters::kHalfWidth);
+                                                MomentFilters::kMostWidth);
   const std::vector<int> bins = quiet_harmonics(experiment);
   std::vector<Spectrum> flights;
   for (int n = 0; n < MomentFilters::kNoiseFlights; ++n) {

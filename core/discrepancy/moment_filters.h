@@ -9,8 +9,8 @@
 //
 //   x = sum_k 2 Re(D(k)^H S(k)^-1 Y(k)) / (sum_k 2 D(k)^H S(k)^-1 D(k))^(1/2)
 //
-// over the harmonics k that are not excited has unit variance and the largest mean that a linear function of the record can have
-// (the matched filter: Turin 1960, IRE Trans. Inf. Theory 6:311). x is linear in the record, so that it is normal as lines are.
+// over the quiet k has the largest mean over deviation of any linear function, and unit variance, were their noises independent (matched
+// filter: Turin 1960, IRE Trans. Inf. Theory 6:311). Gusts smear lines over neighbours alike: more (7 for cubic yaw, 2 x 40 s), as the law sees.
 #pragma once
 
 #include <Eigen/Core>
@@ -31,8 +31,9 @@ struct MomentFilters {
   std::vector<int> bins;        ///< of the DFT of the whole record: harmonics that are not excited
   std::vector<Eigen::MatrixX3cd> weights;  ///< a moment each, bins x 3: x = sum Re(conj(weight) Y)
 
-  static constexpr int kNoiseFlights = 8;     ///< behind S, ...
-  static constexpr int kHalfWidth = 15;       ///< ... with the bins up to this distance that are no harmonics
+  /// Behind S: flights, with the bins about k that are no harmonics, up to a quarter of k away, since the spectra of gusts are steep
+  /// where frequencies are low; these at least and at most.
+  static constexpr int kNoiseFlights = 16, kLeastWidth = 4, kMostWidth = 15;
   static constexpr double kBandFactor = 4.0;  ///< filters reach up to this times the last excited line
 };
 
