@@ -106,6 +106,17 @@ Status decode_identification(const Tree& tree, const FlightTest& flight, Identif
   return table.finish();
 }
 
+/// [validation] weights; 1 each without.
+Status decode_weights(const Tree* tree, std::vector<double>& out) {
+  out.assign(kOutputs, 1.0);
+  if (tree == nullptr) return {};
+  Decoder table(*tree, "validation");
+  out = table.reals("weights", kOutputs, {.low = 0.0, .high = 100.0}, out);
+  if (!table.error() && *std::max_element(out.begin(), out.end()) == 0.0)
+    table.reject("weights", "at least one output has to count: give one a weight above 0");
+  return table.finish();
+}
+
 Status decode_selection(const Tree& tree, const Identification& identification, Selection& out) {
   Decoder table(tree, "selection");
   out.order = static_cast<int>(
@@ -153,6 +164,7 @@ Result<CandidatesSpec> decode_candidates(const CampaignSpec& own) {
   const Tree* model = top.table("model");
   const Tree* flight = top.table("flight");
   const Tree* identification = top.table("identification");
+  const Tree* validation = top.table("validation", false);
   const std::vector<const Tree*> selections = top.tables("selection");
   if (Status status = top.finish(); !status) return fail(status.error());
   Decoder cell(own.cells.front().tree, "cell");
@@ -164,6 +176,7 @@ Result<CandidatesSpec> decode_candidates(const CampaignSpec& own) {
   if (Status status = decode_flight(*flight, out.flight); !status) return fail(status.error());
   if (Status status = decode_identification(*identification, out.flight, out.identification); !status)
     return fail(status.error());
+  if (Status status = decode_weights(validation, out.weights); !status) return fail(status.error());
   for (const Tree* entry : selections) {
     Selection selection;
     if (Status status = decode_selection(*entry, out.identification, selection); !status)

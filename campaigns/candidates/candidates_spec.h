@@ -65,6 +65,7 @@ struct CandidatesSpec {
   Truth truth;
   FlightTest flight;
   Identification identification;
+  std::vector<double> weights;  ///< w_i of the overall d1, H (11), by output
   std::vector<Selection> selections;
 };
 

@@ -33,7 +33,9 @@ Result<std::vector<StudyFigure>> figures(const CampaignSpec& spec, const RowSour
     if (!own) return fail(own.error());
     const auto decoded = decode_candidates(*own);
     if (!decoded) return fail(decoded.error());
-    const ModelTable table = read_models(cell, rows);
+    const auto read = read_models(cell, rows);
+    if (!read) return fail(read.error());
+    const ModelTable& table = *read;
     if (table.models.empty() || decoded->selections.empty()) continue;
     const FlownTest flown = recorded_test(decoded->truth, decoded->flight, spec.trial_seed({cell, 0}));
     add_figures({*decoded, flown, table, spec.cells.size() == 1 ? "" : ", " + spec.cells[cell].name}, out);

@@ -15,7 +15,7 @@ namespace fatmc::candidates {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr double kPrintedGap = 0.95 - 0.91;  // d1 of the two models of H Fig. 2
+constexpr double kPrintedGap = kRollModels[0].agreement - kRollModels[1].agreement;
 
 /// Of those analysed, the model whose d1 of the roll rate is nearest to `wanted`.
 std::optional<std::size_t> nearest_roll(const ModelTable& table, const std::vector<std::size_t>& set,
@@ -118,8 +118,8 @@ StudyFigure roll_history_figure(const CellData& cell, const Selected& selected, 
   figure.panels = {std::move(panel)};
   return {"Fig. 2" + cell.suffix,
           "First multistep of the lateral control. Model 1: the best by d1 of this roll rate; model 2: that "
-          "whose "
-          "d1 is nearest to 0.04 below, the distance of the two models of H (J_rms 0.82 deg/s, d1 0.95; 1.77 "
+          "whose d1 is nearest to 0.04 below, the distance of the two models of H (J_rms 0.82 deg/s, d1 "
+          "0.95; 1.77 "
           "deg/s, 0.91).",
           std::move(figure)};
 }
@@ -136,7 +136,8 @@ StudyFigure impulse_figure(const CellData& cell, const Selection& selection, con
   figure.panel_height = 240.0;
   plot::Panel panel;
   panel.x = {"time, s", plot::Scale::linear, {}, {}};
-  panel.y = {roll ? "p, deg/s a % s of delta_y" : "q, deg/s a % s of delta_x", plot::Scale::linear, {}, {}};
+  panel.y = {
+      roll ? "p, deg/s per % s of delta_y" : "q, deg/s per % s of delta_x", plot::Scale::linear, {}, {}};
   const std::size_t first = roll ? 2 : 0;
   add_impulses(panel, cell, selected.candidates, kJudged[first], roll ? plot::Hue::blue : plot::Hue::grey,
                time);
@@ -144,7 +145,11 @@ StudyFigure impulse_figure(const CellData& cell, const Selection& selection, con
                roll ? plot::Hue::orange : plot::Hue::blue, time);
   figure.panels = {std::move(panel)};
   return {(roll ? "Fig. 10" : "Fig. 9") + cell.suffix + ", " + selection.limit_text(),
-          "Area from the smallest to the largest of the candidates, their mean, and the truth.",
+          "Response to an impulse of 1 % s on the control: area from the smallest to the largest of the " +
+              std::to_string(selected.candidates.size()) +
+              " candidates, their mean, and the truth. The truth's rate begins at 0, since the rotor flaps "
+              "first; an "
+              "identified model may begin with a step.",
           std::move(figure)};
 }
 

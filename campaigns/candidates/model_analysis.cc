@@ -5,14 +5,13 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <utility>
 
 #include "campaigns/candidates/candidates_spec.h"
-#include "core/accuracy/series_accuracy.h"
 #include "core/handling/control_loop.h"
 #include "core/handling/requirements.h"
 #include "core/stats/empirical.h"
 #include "core/subspace/eigenvalues.h"
-#include "core/subspace/model_fit.h"
 
 namespace fatmc::candidates {
 namespace {
@@ -24,15 +23,6 @@ Eigen::RowVectorXd rms_units() {
   Eigen::RowVectorXd out(kOutputs);
   out << kFeet, kFeet, kFeet, kDegrees, kDegrees, kDegrees, kDegrees, kDegrees;
   return out;
-}
-
-/// H (10), corrected; below 0 counts as 0.
-Result<double> agreement(const Eigen::Ref<const Eigen::VectorXd>& measured,
-                         const Eigen::Ref<const Eigen::VectorXd>& simulated) {
-  const auto count = static_cast<std::size_t>(measured.size());
-  const auto index = index_of_agreement({measured.data(), count}, {simulated.data(), count});
-  if (!index) return fail("an output of the validation maneuvers never moves");
-  return std::max(0.0, *index);
 }
 
 /// Oscillatory modes in which that angular rate is the largest of the three; all for -1.
@@ -67,38 +57,24 @@ const std::vector<double>& study_frequencies() {
   return values;
 }
 
-Result<Validation> validate(const ModalModel& modal, std::span<const Maneuver> maneuvers) {
-  Eigen::Index samples = 0;
-  for (const Maneuver& maneuver : maneuvers) samples += maneuver.samples();
-  Eigen::MatrixXd measured(samples, kOutputs), simulated(samples, kOutputs);
-  Eigen::Index row = 0;
-  for (const Maneuver& maneuver : maneuvers) {
-    const auto fit = fit_maneuver(modal, maneuver);
-    if (!fit) return fail(fit.error());
-    measured.middleRows(row, maneuver.samples()) = maneuver.outputs;
-    simulated.middleRows(row, maneuver.samples()) = fit->outputs;
-    row += maneuver.samples();
-  }
-  std::vector<double> indices;
-  for (Eigen::Index i = 0; i < kOutputs; ++i) {
-    const auto index = agreement(measured.col(i), simulated.col(i));
-    if (!index) return fail(index.error());
-    indices.push_back(*index);
-  }
-  const Eigen::RowVectorXd units = rms_units();
+Result<Validation> validate(const ModalModel& modal, std::span<const Maneuver> maneuvers,
+                            std::span<const double> weights) {
+  const auto simulated = repeated_outputs(modal, maneuvers);
+  if (!simulated) return fail(simulated.error());
+  const Eigen::MatrixXd measured = stacked_outputs(maneuvers);
+  auto overall = overall_accuracy(measured, *simulated, rms_units(), weights);
+  if (!overall) return fail(overall.error());
   Validation out;
-  out.agreement = overall_index_of_agreement(indices);
-  out.rms = rms_error(measured * units.asDiagonal(), simulated * units.asDiagonal());
+  out.overall = std::move(*overall);
   if (maneuvers.size() > kRollManeuver) {
-    Eigen::Index first = 0;
-    for (std::size_t j = 0; j < kRollManeuver; ++j) first += maneuvers[j].samples();
-    const Eigen::Index count = maneuvers[kRollManeuver].samples();
-    const Eigen::VectorXd rate = measured.col(kRollRate).segment(first, count),
-                          roll = simulated.col(kRollRate).segment(first, count);
-    const auto index = agreement(rate, roll);
-    if (!index) return fail(index.error());
-    out.roll_agreement = *index;
-    out.roll_rms = rms_error(rate * kDegrees, roll * kDegrees);
+    const Eigen::Index first = stacked_outputs(maneuvers.first(kRollManeuver)).rows(),
+                       count = maneuvers[kRollManeuver].samples();
+    const auto roll = overall_accuracy(measured.block(first, kRollRate, count, 1),
+                                       simulated->block(first, kRollRate, count, 1),
+                                       Eigen::RowVectorXd::Constant(1, kDegrees));
+    if (!roll) return fail(roll.error());
+    out.roll_agreement = roll->agreement;
+    out.roll_rms = roll->rms;
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "campaigns/candidates/maneuver_validation.h"
 #include "campaigns/candidates/row_arrays.h"
 #include "core/base/error.h"
 #include "core/handling/modes.h"
@@ -15,8 +16,8 @@
 namespace fatmc::candidates {
 
 struct Validation {
-  double agreement = 0.0;  ///< overall d1, H (11), each output over all maneuvers one after the other
-  double rms = 0.0;        ///< H (9), ft/s, deg/s, deg
+  OverallAccuracy
+      overall;  ///< over all maneuvers one after the other, J_rms and Theil in ft/s, deg/s and deg
   /// Roll rate of maneuver kRollManeuver alone: d1 of H (10) and deg/s (H Figs. 2 and 3).
   double roll_agreement = 0.0, roll_rms = 0.0;
 };
@@ -25,8 +26,9 @@ inline constexpr Eigen::Index kRollRate = 3;
 /// The first multistep of the lateral control.
 inline constexpr std::size_t kRollManeuver = 2;
 
-/// Each maneuver with its own x0 and y0 (H 6-8). Fails as fit_maneuver does.
-Result<Validation> validate(const ModalModel& modal, std::span<const Maneuver> maneuvers);
+/// Fails as repeated_outputs and overall_accuracy do. `weights`: w_i of H (11), none for 1 each.
+Result<Validation> validate(const ModalModel& modal, std::span<const Maneuver> maneuvers,
+                            std::span<const double> weights = {});
 
 struct ModelAnalysis {
   std::array<double, kTrackedModes.size()> period_s{}, damping{};  ///< 0 where no mode is near

@@ -9,17 +9,57 @@
 namespace fatmc::candidates {
 namespace {
 
-const std::vector<double>& need(const TrialRow& row, std::string_view name) {
+tl::unexpected<Error> other_version(std::string_view name, const std::string& found) {
+  return fail(Error{"", 0, std::string(name),
+                    found +
+                        ": another version of the study computed this database, run the spec into a new one "
+                        "(fatmc run SPEC --db NEW.db)"});
+}
+
+/// `row` holds that many values of it.
+Status check_array(const TrialRow& row, std::string_view name, std::size_t count) {
   const std::vector<double>* values = row.array(name);
-  FATMC_CHECK(values != nullptr, "a row of the candidates study holds all its arrays");
-  return *values;
+  if (values == nullptr) return other_version(name, "the rows do not hold this list");
+  if (values->size() == count) return {};
+  return other_version(name, "a row holds " + std::to_string(values->size()) + " values where " +
+                                 std::to_string(count) + " belong");
+}
+
+Status check_metrics(const TrialRow& row) {
+  for (const std::string_view name : {kNotIdentified, kNotValidated, kNotContinuous}) {
+    if (std::none_of(row.metrics.begin(), row.metrics.end(), [&](const auto& m) { return m.first == name; }))
+      return other_version(name, "the rows do not hold this number");
+  }
+  return {};
+}
+
+/// All arrays of row_arrays.h, each as long as the models it lists need.
+Status check_arrays(const TrialRow& row) {
+  const std::vector<double>* past = row.array(kPast);
+  const std::size_t models = past == nullptr ? 0 : past->size();
+  for (const std::string_view name :
+       {kPast, kFuture, kOrder, kState, kAgreement, kRms, kTheil, kNorm, kRollAgreement, kRollRms}) {
+    if (Status status = check_array(row, name, models); !status) return status;
+  }
+  if (Status status = check_array(row, kOutputAgreement, models * kOutputs); !status) return status;
+  const std::vector<double>* analysed = row.array(kAnalysed);
+  if (analysed == nullptr) return check_array(row, kAnalysed, 0);
+  std::size_t states = 0;
+  for (const double index : *analysed) {
+    FATMC_CHECK(index >= 0.0 && index < static_cast<double>(models), "an analysed model is one of the row's");
+    states += static_cast<std::size_t>(array_of(row, kOrder)[static_cast<std::size_t>(index)]);
+  }
+  if (Status status = check_array(row, kMagnitude, analysed->size() * kFrequencies); !status) return status;
+  if (Status status = check_array(row, kEigenvalues, 2 * states); !status) return status;
+  if (Status status = check_array(row, kModalB, states * kInputs); !status) return status;
+  return check_array(row, kModalC, states * kOutputs);
 }
 
 /// Takes modal models one after the other from the arrays of a row.
 class ModelReader {
  public:
   explicit ModelReader(const TrialRow& row)
-      : eigenvalues_(need(row, kEigenvalues)), b_(need(row, kModalB)), c_(need(row, kModalC)) {}
+      : eigenvalues_(array_of(row, kEigenvalues)), b_(array_of(row, kModalB)), c_(array_of(row, kModalC)) {}
 
   ModalModel next(Eigen::Index order) {
     ModalModel out;
@@ -48,8 +88,8 @@ class ModelReader {
 };
 
 void add_analyses(const TrialRow& row, std::size_t first, ModelTable& table) {
-  const auto& analysed = need(row, kAnalysed);
-  const auto& magnitude = need(row, kMagnitude);
+  const auto& analysed = array_of(row, kAnalysed);
+  const auto& magnitude = array_of(row, kMagnitude);
   constexpr std::size_t grid = kFrequencies;
   ModelReader models(row);
   for (std::size_t k = 0; k < analysed.size(); ++k) {
@@ -63,42 +103,46 @@ void add_analyses(const TrialRow& row, std::size_t first, ModelTable& table) {
   }
 }
 
-double metric(const TrialRow& row, std::string_view name) {
-  for (const auto& [key, value] : row.metrics) {
-    if (key == name) return value;
-  }
-  return 0.0;
-}
-
 std::vector<std::size_t> leading(const std::vector<std::size_t>& sorted, std::size_t count) {
   return {sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(std::min(count, sorted.size()))};
 }
 
 }  // namespace
 
-ModelTable read_models(std::uint32_t cell, const RowSource& rows) {
+Result<ModelTable> read_models(std::uint32_t cell, const RowSource& rows) {
   ModelTable out;
+  Status status;
   rows(cell, [&](const TrialRow& row) {
+    if (!status) return;
     ++out.trials;
     if (row.outcome != "ok") {
       ++out.failed_trials;
       return;
     }
+    if (status = check_arrays(row); !status) return;
+    if (status = check_metrics(row); !status) return;
     const std::size_t first = out.models.size();
-    const auto &past = need(row, kPast), &future = need(row, kFuture), &order = need(row, kOrder),
-               &state = need(row, kState), &agreement = need(row, kAgreement), &rms = need(row, kRms),
-               &norm = need(row, kNorm), &roll_agreement = need(row, kRollAgreement),
-               &roll_rms = need(row, kRollRms);
-    for (std::size_t i = 0; i < past.size(); ++i) {
-      out.models.push_back({static_cast<int>(past[i]), static_cast<int>(future[i]),
-                            static_cast<int>(order[i]), static_cast<ModelState>(static_cast<int>(state[i])),
-                            agreement[i], rms[i], norm[i], roll_agreement[i], roll_rms[i], -1});
+    const auto value = [&](std::string_view name, std::size_t i) { return array_of(row, name)[i]; };
+    const auto whole = [&](std::string_view name, std::size_t i) { return static_cast<int>(value(name, i)); };
+    for (std::size_t i = 0; i < array_of(row, kPast).size(); ++i) {
+      ModelRow model{whole(kPast, i), whole(kFuture, i), whole(kOrder, i),
+                     static_cast<ModelState>(whole(kState, i))};
+      model.agreement = value(kAgreement, i);
+      model.rms = value(kRms, i);
+      model.theil = value(kTheil, i);
+      model.norm = value(kNorm, i);
+      model.roll_agreement = value(kRollAgreement, i);
+      model.roll_rms = value(kRollRms, i);
+      for (std::size_t k = 0; k < kOutputs; ++k)
+        model.output_agreement[k] = value(kOutputAgreement, i * kOutputs + k);
+      out.models.push_back(model);
     }
     add_analyses(row, first, out);
-    out.not_identified += metric(row, kNotIdentified);
-    out.not_validated += metric(row, kNotValidated);
-    out.not_continuous += metric(row, kNotContinuous);
+    out.not_identified += metric_of(row, kNotIdentified);
+    out.not_validated += metric_of(row, kNotValidated);
+    out.not_continuous += metric_of(row, kNotContinuous);
   });
+  if (!status) return fail(status.error());
   return out;
 }
 

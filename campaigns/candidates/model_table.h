@@ -8,6 +8,7 @@
 #include "campaigns/base/study.h"
 #include "campaigns/candidates/candidates_spec.h"
 #include "campaigns/candidates/row_arrays.h"
+#include "core/base/error.h"
 #include "core/subspace/discrete_model.h"
 
 namespace fatmc::candidates {
@@ -23,6 +24,8 @@ struct ModelRow {
   double agreement = 0.0, rms = 0.0, norm = 0.0;
   double roll_agreement = 0.0, roll_rms = 0.0;  ///< kRollAgreement, kRollRms
   int analysis = -1;                            ///< index into ModelTable::analyses, or -1
+  double theil = 0.0;
+  std::array<double, kOutputs> output_agreement{};  ///< d1 of each output; 0 where records have other outputs
 };
 
 struct ModelTable {
@@ -38,7 +41,9 @@ struct ModelTable {
   }
 };
 
-ModelTable read_models(std::uint32_t cell, const RowSource& rows);
+/// Fails on rows that an older version of the study left: some array is missing or of another length. The error says which and
+/// what to do; the file is the caller's to add.
+Result<ModelTable> read_models(std::uint32_t cell, const RowSource& rows);
 
 /// Indices into ModelTable::models, best d1 first. Models that failed are in none.
 struct Selected {

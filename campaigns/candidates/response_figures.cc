@@ -62,7 +62,7 @@ void add_spread(plot::Panel& panel, const ModelTable& table, const Indices& set)
     below.push_back(mean[k] - deviation);
     above.push_back(mean[k] + deviation);
   }
-  panel.marks.push_back(plot::Band{"mean and standard deviation", x, below, above, plot::Hue::grey});
+  panel.marks.push_back(plot::Band{"mean +- standard deviation", x, below, above, plot::Hue::grey});
   panel.marks.push_back(plot::Line{"mean", x, mean, plot::Hue::grey, plot::Dash::solid});
   panel.marks.push_back(plot::Line{"smallest and largest", x, low, plot::Hue::grey, plot::Dash::dotted});
   panel.marks.push_back(plot::Line{"smallest and largest", x, high, plot::Hue::grey, plot::Dash::dotted});
@@ -91,8 +91,9 @@ plot::Panel responses(const std::string& title, const CellData& cell, const Indi
 
 constexpr const char* kCaption =
     "Magnitude of p/delta_y in deg/s per per cent of control. Measured: estimated from the eight sweeps "
-    "together, as "
-    "fatmc estimate --method arbitrary does, within the band of the sweeps.";
+    "together, as fatmc estimate --method arbitrary does, within the band of the sweeps. Mean and standard "
+    "deviation over the "
+    "models, of decibels.";
 
 }  // namespace
 

@@ -13,6 +13,9 @@ inline constexpr std::string_view kPast = "past", kFuture = "future", kOrder = "
 inline constexpr std::string_view kState = "state";   ///< a ModelState
 inline constexpr std::string_view kAgreement = "d1";  ///< overall index of agreement, H (11); 0 without
 inline constexpr std::string_view kRms = "j_rms";     ///< H (9), ft/s, deg/s, deg; 0 without
+inline constexpr std::string_view kTheil = "theil";   ///< Theil's coefficient in the same units; 0 without
+/// kOutputs values a model: d1 of each output (H 10); 0 without.
+inline constexpr std::string_view kOutputAgreement = "d1_outputs";
 /// The same of the roll rate alone in the first lateral multistep (H Figs. 2, 3); deg/s.
 inline constexpr std::string_view kRollAgreement = "roll_d1", kRollRms = "roll_rms";
 inline constexpr std::string_view kNorm = "norm";  ///< spectral norm of A_K^p; 0 without
@@ -50,6 +53,13 @@ inline constexpr std::array<TrackedMode, 5> kTrackedModes = {
      {"roll/flap, SCAS", 1, 0.45, 0.32, -1},
      {"lead-lag, SCAS", 1, 0.55, 0.03, -1},
      {"roll/flap, SCAS and filter", 2, 0.43, 0.58, -1}}};
+
+/// The order whose selection H shows in Figs. 5 to 7, and the two models of its Figs. 2 and 3.
+inline constexpr int kShownOrder = 12;
+struct RollModel {
+  double rms_deg_s, agreement;
+};
+inline constexpr std::array<RollModel, 2> kRollModels = {{{0.82, 0.95}, {1.77, 0.91}}};
 
 /// What is judged by CS-27 and ADS-33: a vehicle's response of an output to an input.
 struct JudgedResponse {

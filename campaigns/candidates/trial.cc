@@ -25,6 +25,8 @@ class BlockResults {
     state_.push_back(static_cast<double>(ModelState::ok));
     agreement_.push_back(0.0);
     rms_.push_back(0.0);
+    theil_.push_back(0.0);
+    output_agreement_.resize(output_agreement_.size() + kOutputs, 0.0);
     norm_.push_back(0.0);
     roll_agreement_.push_back(0.0);
     roll_rms_.push_back(0.0);
@@ -38,10 +40,14 @@ class BlockResults {
     const DiscreteModel discrete{model->a, model->b, model->c};
     const auto modal = modal_model(discrete);
     if (!modal) return failed(ModelState::not_validated, member, modal.error());
-    const auto validation = validate(*modal, multisteps_);
+    const auto validation = validate(*modal, multisteps_, spec_.weights);
     if (!validation) return failed(ModelState::not_validated, member, validation.error());
-    agreement_.back() = validation->agreement;
-    rms_.back() = validation->rms;
+    const OverallAccuracy& overall = validation->overall;
+    agreement_.back() = overall.agreement;
+    rms_.back() = overall.rms;
+    theil_.back() = overall.theil;
+    std::copy(overall.output_agreement.begin(), overall.output_agreement.end(),
+              output_agreement_.end() - kOutputs);
     roll_agreement_.back() = validation->roll_agreement;
     roll_rms_.back() = validation->roll_rms;
     const bool selected = std::any_of(spec_.selections.begin(), spec_.selections.end(),
@@ -63,6 +69,7 @@ class BlockResults {
     };
     array(kPast, past_), array(kFuture, future_), array(kOrder, order_), array(kState, state_);
     array(kAgreement, agreement_), array(kRms, rms_), array(kNorm, norm_), array(kLambda, lambda_);
+    array(kTheil, theil_), array(kOutputAgreement, output_agreement_);
     array(kAnalysed, analysed_), array(kMagnitude, magnitude_);
     array(kRollAgreement, roll_agreement_), array(kRollRms, roll_rms_);
     array(kEigenvalues, eigenvalues_), array(kModalB, modal_b_), array(kModalC, modal_c_);
@@ -108,7 +115,8 @@ class BlockResults {
 
   const CandidatesSpec& spec_;
   std::span<const Maneuver> multisteps_;
-  std::vector<double> past_, future_, order_, state_, agreement_, rms_, norm_, lambda_;
+  std::vector<double> past_, future_, order_, state_, agreement_, rms_, theil_, output_agreement_, norm_,
+      lambda_;
   std::vector<double> analysed_, magnitude_;
   std::vector<double> roll_agreement_, roll_rms_, eigenvalues_, modal_b_, modal_c_;
   int lambda_past_ = 0, not_identified_ = 0, not_validated_ = 0, not_continuous_ = 0;

@@ -10,6 +10,7 @@
 #include "coordinator/cli/diagnosis_run.h"
 #include "coordinator/cli/output_path.h"
 #include "coordinator/cli/response_diagnosis.h"
+#include "coordinator/cli/response_model.h"
 #include "core/base/text.h"
 #include "core/record/column_file.h"
 
@@ -144,7 +145,7 @@ void add_diagnose_command(CLI::App& app, Exit& exit) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "diagnose", "find where records and model disagree, name what is missing, add it to the model");
-  command->add_option("--model", options->model, "aircraft (TOML), earlier patches included");
+  command->add_option("--model", options->model, "aircraft (TOML), earlier patches included; or kind state_space, frf, recorded_output");
   command->add_option("--record", options->records,
                       "records of the loop (CSV with TOML beside it); several at other levels or speeds");
   command->add_option("--holdout", options->holdout,

@@ -71,6 +71,8 @@ Json candidates_json(const RecordCandidates& result) {
       entry["candidates"].push_back({{"past", model.past},
                                      {"future", model.future},
                                      {"agreement", model.agreement},
+                                     {"rms", model.rms},
+                                     {"theil", model.theil},
                                      {"norm", model.norm}});
     }
     for (const SpreadScore& score : order.outputs) {

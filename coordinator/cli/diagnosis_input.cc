@@ -121,8 +121,10 @@ Result<DiagnosedModel> read_diagnosed_model(const std::string& path) {
   const Tree* kind = tree->find("kind");
   const auto* name = kind != nullptr ? std::get_if<std::string>(&kind->value) : nullptr;
   if (name != nullptr && *name != "aircraft") {
-    return fail(
-        Error{path, kind->line, "kind", "is \"" + *name + "\": diagnose takes models of kind \"aircraft\""});
+    return fail(Error{path, kind->line, "kind",
+                      "is \"" + *name +
+                          "\": diagnose takes models of kind \"aircraft\", \"state_space\", \"frf\" or "
+                          "\"recorded_output\""});
   }
   auto model = decode_aircraft_model(*tree);
   if (!model) return fail(model.error());

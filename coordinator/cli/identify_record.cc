@@ -24,10 +24,10 @@ Result<IdentifiedRecords> identify_records(const IdentifyArguments& arguments) {
     out.continuous_failure = continuous.error().message;
   }
   for (const NamedManeuver& maneuver : maneuvers->identification) {
-    out.identification.push_back(score(maneuver, out.outputs, discrete));
+    out.identification.push_back(score(maneuver, out.outputs, discrete, arguments.weights));
   }
   for (const NamedManeuver& maneuver : maneuvers->validation) {
-    out.validation.push_back(score(maneuver, out.outputs, discrete));
+    out.validation.push_back(score(maneuver, out.outputs, discrete, arguments.weights));
   }
   return out;
 }

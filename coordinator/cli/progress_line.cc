@@ -10,7 +10,8 @@
 namespace fatmc::cli {
 namespace {
 
-constexpr double kWindowS = 10.0;  // short enough to follow a change, long enough to be calm
+constexpr double kWindowS = 10.0;     // short enough to follow a change, long enough to be calm
+constexpr std::uint64_t kFewest = 8;  // trials that a rate is taken over; long ones make the window longer
 constexpr std::chrono::milliseconds kRedraw{200};
 constexpr std::chrono::milliseconds kNewLine{5000};
 constexpr std::uint64_t kBarWidth = 30;
@@ -18,8 +19,15 @@ constexpr std::uint64_t kBarWidth = 30;
 }  // namespace
 
 void RateMeter::add(Seconds time, std::uint64_t done) {
-  samples_.emplace_back(time, done);
-  while (samples_.size() > 2 && (time - samples_.front().first).count() > kWindowS) samples_.pop_front();
+  const std::size_t size = samples_.size();
+  if (size >= 2 && samples_[size - 2].second == samples_[size - 1].second)
+    samples_.back() = {time, done};  // of a pause, when it began is kept: few samples, however long it lasts
+  else
+    samples_.emplace_back(time, done);
+  const auto enough_from = [&](std::size_t first) {
+    return (time - samples_[first].first).count() > kWindowS && done - samples_[first].second >= kFewest;
+  };
+  while (samples_.size() > 2 && enough_from(1)) samples_.pop_front();
 }
 
 double RateMeter::per_second() const {

@@ -9,7 +9,7 @@
 
 namespace fatmc::cli {
 
-/// Trials a second over the last seconds, and how long the rest takes at that rate.
+/// Trials a second over the last seconds, of long trials over the last few of them, and how long the rest takes at that rate.
 class RateMeter {
  public:
   using Seconds = std::chrono::duration<double>;

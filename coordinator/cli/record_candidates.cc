@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/accuracy/series_accuracy.h"
+#include "campaigns/candidates/maneuver_validation.h"
 #include "core/stats/empirical.h"
 #include "core/subspace/eigenvalues.h"
 #include "core/subspace/model_fit.h"
@@ -16,48 +16,21 @@ using candidates::ModelState;
 
 constexpr double kCovering = 1.96;
 
-/// All validation maneuvers one after the other; nothing where one of them fails.
-Result<Eigen::MatrixXd> simulated(const DiscreteModel& model, const std::vector<NamedManeuver>& maneuvers) {
+/// The validation maneuvers, and all their outputs as measured.
+struct ValidationData {
+  std::vector<Maneuver> maneuvers;
+  Eigen::MatrixXd measured;
+  std::vector<double> weights;
+};
+
+Result<Eigen::MatrixXd> simulated(const DiscreteModel& model, const ValidationData& data) {
   const auto modal = modal_model(model);
   if (!modal) return fail(modal.error());
-  Eigen::Index samples = 0;
-  for (const NamedManeuver& m : maneuvers) samples += m.maneuver.samples();
-  Eigen::MatrixXd out(samples, model.c.rows());
-  Eigen::Index row = 0;
-  for (const NamedManeuver& m : maneuvers) {
-    const auto fit = fit_maneuver(*modal, m.maneuver);
-    if (!fit) return fail(fit.error());
-    out.middleRows(row, m.maneuver.samples()) = fit->outputs;
-    row += m.maneuver.samples();
-  }
-  return out;
+  return candidates::repeated_outputs(*modal, data.maneuvers);
 }
 
-Eigen::MatrixXd measured(const std::vector<NamedManeuver>& maneuvers) {
-  Eigen::Index samples = 0;
-  for (const NamedManeuver& m : maneuvers) samples += m.maneuver.samples();
-  Eigen::MatrixXd out(samples, maneuvers.front().maneuver.outputs.cols());
-  Eigen::Index row = 0;
-  for (const NamedManeuver& m : maneuvers) {
-    out.middleRows(row, m.maneuver.samples()) = m.maneuver.outputs;
-    row += m.maneuver.samples();
-  }
-  return out;
-}
-
-Result<double> overall_agreement(const Eigen::MatrixXd& y, const Eigen::MatrixXd& model) {
-  std::vector<double> indices;
-  for (Eigen::Index i = 0; i < y.cols(); ++i) {
-    const auto count = static_cast<std::size_t>(y.rows());
-    const auto index = index_of_agreement({y.col(i).data(), count}, {model.col(i).data(), count});
-    if (!index) return fail("an output of the validation maneuvers never moves");
-    indices.push_back(std::max(0.0, *index));
-  }
-  return overall_index_of_agreement(indices);
-}
-
-void judge(const FamilyMember& member, const Result<PbsidModel>& model, const Eigen::MatrixXd& y,
-           const std::vector<NamedManeuver>& validation, RecordCandidates& out) {
+void judge(const FamilyMember& member, const Result<PbsidModel>& model, const ValidationData& data,
+           RecordCandidates& out) {
   ModelRow row{member.past, member.future, member.order};
   out.models.emplace_back();
   const auto failed = [&](ModelState state, const Error& error) {
@@ -70,23 +43,26 @@ void judge(const FamilyMember& member, const Result<PbsidModel>& model, const Ei
   if (!model) return failed(ModelState::not_identified, model.error());
   row.norm = model->predictor_norm;
   const DiscreteModel discrete{model->a, model->b, model->c};
-  const auto outputs = simulated(discrete, validation);
+  const auto outputs = simulated(discrete, data);
   if (!outputs) return failed(ModelState::not_validated, outputs.error());
-  const auto agreement = overall_agreement(y, *outputs);
-  if (!agreement) return failed(ModelState::not_validated, agreement.error());
-  row.agreement = *agreement;
-  row.rms = rms_error(y, *outputs);
+  const auto accuracy = candidates::overall_accuracy(
+      data.measured, *outputs, Eigen::RowVectorXd::Ones(data.measured.cols()), data.weights);
+  if (!accuracy) return failed(ModelState::not_validated, accuracy.error());
+  row.agreement = accuracy->agreement;
+  row.rms = accuracy->rms;
+  row.theil = accuracy->theil;
   out.models.back() = discrete;
   out.table.models.push_back(row);
 }
 
 std::vector<SpreadScore> spread_of(const RecordCandidates& all, const candidates::Selected& selected,
-                                   const Eigen::MatrixXd& y, const std::vector<NamedManeuver>& validation) {
+                                   const ValidationData& data) {
   if (selected.candidates.empty()) return {};
-  const auto best = simulated(all.models[selected.all.front()], validation);
+  const Eigen::MatrixXd& y = data.measured;
+  const auto best = simulated(all.models[selected.all.front()], data);
   std::vector<Eigen::MatrixXd> series;
   for (const std::size_t i : selected.candidates) {
-    if (const auto one = simulated(all.models[i], validation)) series.push_back(*one);
+    if (const auto one = simulated(all.models[i], data)) series.push_back(*one);
   }
   if (!best || series.empty()) return {};
   Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(y.rows(), y.cols()), square = mean;
@@ -113,7 +89,7 @@ std::vector<SpreadScore> spread_of(const RecordCandidates& all, const candidates
 }
 
 OrderCandidates order_candidates(const CandidateArguments& arguments, const RecordCandidates& all, int order,
-                                 const Eigen::MatrixXd& y, const std::vector<NamedManeuver>& validation) {
+                                 const ValidationData& data) {
   candidates::Selection selection;
   selection.order = order;
   selection.norm = arguments.norm;
@@ -131,7 +107,7 @@ OrderCandidates order_candidates(const CandidateArguments& arguments, const Reco
     const auto radius = spectral_radius(all.models[i].a);
     if (!radius || *radius >= 1.0) ++out.unstable;
   }
-  out.outputs = spread_of(all, out.selected, y, validation);
+  out.outputs = spread_of(all, out.selected, data);
   return out;
 }
 
@@ -152,16 +128,17 @@ Result<RecordCandidates> record_candidates(const CandidateArguments& arguments,
   out.outputs = maneuvers->outputs;
   out.rate_hz = maneuvers->rate_hz;
   const std::vector<Maneuver> data = maneuvers->data();
-  const Eigen::MatrixXd y = measured(maneuvers->validation);
+  ValidationData validation{maneuvers->validation_data(), {}, arguments.weights};
+  validation.measured = candidates::stacked_outputs(validation.maneuvers);
   int past = 0;
   const Status status =
       identify_family(data, arguments.plan, [&](const FamilyMember& member, const Result<PbsidModel>& model) {
         if (member.past != past) progress(past = member.past);
-        judge(member, model, y, maneuvers->validation, out);
+        judge(member, model, validation, out);
       });
   if (!status) return fail(Error{arguments.records.front(), 0, "candidates", status.error().message});
   for (int order = arguments.plan.lowest_order; order <= arguments.plan.highest_order; ++order)
-    out.orders.push_back(order_candidates(arguments, out, order, y, maneuvers->validation));
+    out.orders.push_back(order_candidates(arguments, out, order, validation));
   return out;
 }
 

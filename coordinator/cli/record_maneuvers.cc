@@ -67,6 +67,24 @@ void remove_offset(NamedManeuver& maneuver, OffsetRemoval rule) {
   remove_offsets(std::span<Maneuver>(&maneuver.maneuver, 1), rule);
 }
 
+std::vector<Maneuver> without_names(const std::vector<NamedManeuver>& maneuvers) {
+  std::vector<Maneuver> out;
+  for (const NamedManeuver& maneuver : maneuvers) out.push_back(maneuver.maneuver);
+  return out;
+}
+
+Status check_weights(const RecordSelection& selection, const Channels& channels) {
+  const std::vector<double>& weights = selection.weights;
+  if (weights.empty()) return {};
+  if (weights.size() != channels.outputs.size()) {
+    return fail(Error{selection.records.front(), 0, "--weights",
+                      std::to_string(weights.size()) + " for " + std::to_string(channels.outputs.size()) +
+                          " outputs: give one an output, in the order " + join(channels.outputs)});
+  }
+  if (*std::max_element(weights.begin(), weights.end()) > 0.0) return {};
+  return fail(Error{"", 0, "--weights", "at least one output has to count: give one a weight above 0"});
+}
+
 }  // namespace
 
 void add_record_options(CLI::App& command, RecordSelection& selection) {
@@ -90,13 +108,17 @@ void add_record_options(CLI::App& command, RecordSelection& selection) {
   command.add_option("--decimate", selection.decimation, "low pass without delay, then every N-th sample")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  command
+      .add_option(
+          "--weights", selection.weights,
+          "of the outputs in the overall d1 (H 11), for instance 1,1,2; 0 leaves one out (default: 1 each)")
+      ->delimiter(',')
+      ->check(CLI::Range(0.0, 100.0));
 }
 
-std::vector<Maneuver> RecordManeuvers::data() const {
-  std::vector<Maneuver> out;
-  for (const NamedManeuver& maneuver : identification) out.push_back(maneuver.maneuver);
-  return out;
-}
+std::vector<Maneuver> RecordManeuvers::data() const { return without_names(identification); }
+
+std::vector<Maneuver> RecordManeuvers::validation_data() const { return without_names(validation); }
 
 Result<RecordManeuvers> read_maneuvers(const RecordSelection& selection) {
   RecordManeuvers out;
@@ -121,6 +143,7 @@ Result<RecordManeuvers> read_maneuvers(const RecordSelection& selection) {
     remove_offset(*read, selection.offset);
     out.validation.push_back(std::move(*read));
   }
+  if (Status status = check_weights(selection, channels); !status) return fail(status.error());
   out.inputs = channels.inputs;
   out.outputs = channels.outputs;
   out.rate_hz = channels.rate_hz / selection.decimation;
@@ -128,7 +151,7 @@ Result<RecordManeuvers> read_maneuvers(const RecordSelection& selection) {
 }
 
 ManeuverScore score(const NamedManeuver& maneuver, const std::vector<std::string>& outputs,
-                    const DiscreteModel& model) {
+                    const DiscreteModel& model, std::span<const double> weights) {
   ManeuverScore out;
   out.name = maneuver.name;
   const auto fit = fit_maneuver(model, maneuver.maneuver);
@@ -147,7 +170,8 @@ ManeuverScore score(const NamedManeuver& maneuver, const std::vector<std::string
          rms_error(measured.col(i), fit->outputs.col(i)), theil_coefficient(m, y), index_of_agreement(m, y)});
     if (out.outputs.back().agreement) agreements.push_back(*out.outputs.back().agreement);
   }
-  if (agreements.size() == out.outputs.size()) out.overall_agreement = overall_index_of_agreement(agreements);
+  if (agreements.size() == out.outputs.size())
+    out.overall_agreement = overall_index_of_agreement(agreements, weights);
   out.simulated = fit->outputs;
   return out;
 }

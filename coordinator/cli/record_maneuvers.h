@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,10 @@ struct RecordSelection {
   OffsetRemoval offset = OffsetRemoval::mean;
   double hold_back = 0.0;  ///< share at the end of each record that is kept for validation
   int decimation = 1;
+  std::vector<double> weights;  ///< w_i of the overall d1, H (11), by output; none: 1 each
 };
 
-/// record..., --validate, --hold-back, --meta, --offset, --decimate.
+/// record..., --validate, --hold-back, --meta, --offset, --decimate, --weights.
 void add_record_options(CLI::App& command, RecordSelection& selection);
 
 struct NamedManeuver {
@@ -34,8 +36,9 @@ struct RecordManeuvers {
   std::vector<std::string> inputs, outputs;
   double rate_hz = 0.0;  ///< after decimation
 
-  /// Those of the identification alone, in order.
+  /// Those of the identification or of the validation alone, in order.
   [[nodiscard]] std::vector<Maneuver> data() const;
+  [[nodiscard]] std::vector<Maneuver> validation_data() const;
 };
 
 /// Reads, decimates, cuts and removes offsets. The error names the file or option to change.
@@ -52,13 +55,13 @@ struct ManeuverScore {
   std::string name;
   std::vector<OutputScore> outputs;
   double rms = 0.0;                         ///< over all outputs
-  std::optional<double> overall_agreement;  ///< H (11), weights 1
+  std::optional<double> overall_agreement;  ///< H (11)
   std::string failure;                      ///< why the model could not be judged; scores are empty then
   Eigen::MatrixXd simulated;                ///< samples x n_y
 };
 
 /// How well the model repeats the maneuver, initial state and offsets fitted (model_fit.h).
 ManeuverScore score(const NamedManeuver& maneuver, const std::vector<std::string>& outputs,
-                    const DiscreteModel& model);
+                    const DiscreteModel& model, std::span<const double> weights = {});
 
 }  // namespace fatmc::cli

@@ -1,9 +1,11 @@
-// `fatmc diagnose` for models that are a response or a series, of any process:
+// `fatmc diagnose` for models that are a response, a linear model or a series, of any process:
 //
 //   kind = "frf"                 kind = "recorded_output"      # what a model gave for this very record
 //   response = "frm.csv"         data = "model.csv"
 //   elements = "diagonal"        output = ["q", "p"]           # its columns, in the order of the record's outputs
 //   band_hz = [0.5, 40.0]        band_hz = [0.1, 2.0]          # optional
+//
+//   kind = "state_space"         # keys of coordinator/input/state_space_model.h, and band_hz
 // An frf with elements = "diagonal" has no others, whatever its file holds. What of the model's error is a response to the inputs
 // is missing in the model: a cross coupling where the model has no such element, an error of the element where it has. What is
 // incoherent stays unknown. A recorded output cannot be repaired: there the answer says where, and unknown.
@@ -21,9 +23,6 @@ struct ResponseDiagnosisFiles {
       files;            ///< name, text; frm.csv and model.toml where the model can be repaired
   std::string summary;  ///< for the terminal
 };
-
-/// "frf", "recorded_output", or empty for any other kind or an unreadable file (whose reader reports it).
-std::string response_kind(const std::string& model);
 
 Result<ResponseDiagnosisFiles> diagnose_response(const std::string& model,
                                                  const std::vector<std::string>& records,

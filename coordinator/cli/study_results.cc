@@ -52,13 +52,19 @@ Result<StudyDatabase> StudyDatabase::open(const std::string& path) {
         "run the spec into a new database\n",
         path.c_str(), reader->build().substr(0, 12).c_str(), build_hash().substr(0, 12).c_str());
   }
-  return StudyDatabase(std::move(*reader), study);
+  return StudyDatabase(path, std::move(*reader), study);
+}
+
+Error StudyDatabase::placed(Error error) const {
+  if (error.file.empty()) error.file = path_;
+  return error;
 }
 
 Result<std::vector<TableRow>> StudyDatabase::tables() const {
   auto rows = study_->tables(reader_.spec(), reader_.rows());
+  if (!rows) return fail(placed(rows.error()));
   const std::uint64_t stored = reader_.stored();
-  if (!rows || stored >= planned()) return rows;
+  if (stored >= planned()) return rows;
   const std::string partial =
       "partial: " + std::to_string(stored) + " of " + std::to_string(planned()) + " trials are stored";
   for (TableRow& row : *rows) row.why = partial + (row.why.empty() ? "" : "; " + row.why);
@@ -67,7 +73,9 @@ Result<std::vector<TableRow>> StudyDatabase::tables() const {
 
 Result<std::vector<StudyFigure>> StudyDatabase::figures() const {
   if (study_->figures == nullptr) return std::vector<StudyFigure>{};
-  return study_->figures(reader_.spec(), reader_.rows());
+  auto figures = study_->figures(reader_.spec(), reader_.rows());
+  if (!figures) return fail(placed(figures.error()));
+  return figures;
 }
 
 }  // namespace fatmc::cli

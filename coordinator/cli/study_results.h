@@ -31,8 +31,11 @@ class StudyDatabase {
   [[nodiscard]] std::uint64_t planned() const { return reader_.spec().trial_count(); }
 
  private:
-  StudyDatabase(CampaignReader reader, const SummaryStudy* study)
-      : reader_(std::move(reader)), study_(study) {}
+  StudyDatabase(std::string path, CampaignReader reader, const SummaryStudy* study)
+      : path_(std::move(path)), reader_(std::move(reader)), study_(study) {}
+  /// An error of the rows is one of the file.
+  [[nodiscard]] Error placed(Error error) const;
+  std::string path_;
   CampaignReader reader_;
   const SummaryStudy* study_;
 };

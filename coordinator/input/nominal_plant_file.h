@@ -2,12 +2,7 @@
 //
 //   kind = "aircraft"      campaigns/models/fat.toml describes the keys. Sampled at the record's rate with held commands;
 //                          poles beyond 1 − 1e-8 are moved onto that circle (nominal_model.h).
-//   kind = "state_space"   x[n+1] = A x + B u, y = C x + D u:
-//                            A, B, C     matrices, row by row
-//                            D           likewise; absent: zero
-//                            rate_hz     or sample_time_s; must be the record's
-//                            inputs      names of the columns of B; absent: the record's, in its order
-//                            outputs     names of the rows of C; likewise
+//   kind = "state_space"   state_space_model.h describes the keys.
 //                          Poles between 1 − 1e-8 and 1 + 1e-6 (integrators, to rounding) are moved as above; poles further
 //                          out are refused.
 //   kind = "frf"           file = "frm.csv", relative to the TOML: a response as `fatmc estimate` writes it. A path that

@@ -20,9 +20,11 @@ std::optional<double> theil_coefficient(std::span<const double> measured, std::s
   return std::sqrt(difference) / sum;
 }
 
-std::optional<double> index_of_agreement(std::span<const double> measured, std::span<const double> simulated) {
+std::optional<double> index_of_agreement(std::span<const double> measured,
+                                         std::span<const double> simulated) {
   FATMC_CHECK(measured.size() == simulated.size() && !measured.empty(), "two series of one length");
-  const double mean = std::accumulate(measured.begin(), measured.end(), 0.0) / static_cast<double>(measured.size());
+  const double mean =
+      std::accumulate(measured.begin(), measured.end(), 0.0) / static_cast<double>(measured.size());
   double difference = 0.0, potential = 0.0;
   for (std::size_t k = 0; k < measured.size(); ++k) {
     difference += std::abs(measured[k] - simulated[k]);
@@ -32,10 +34,13 @@ std::optional<double> index_of_agreement(std::span<const double> measured, std::
   return 1.0 - difference / potential;
 }
 
-double overall_index_of_agreement(std::span<const double> indices) {
+double overall_index_of_agreement(std::span<const double> indices, std::span<const double> weights) {
   FATMC_CHECK(!indices.empty(), "at least one output");
+  FATMC_CHECK(weights.empty() || weights.size() == indices.size(), "a weight an output");
+  const auto count = static_cast<double>(indices.size());
   double product = 1.0;
-  for (const double d : indices) product *= std::pow(d, 1.0 / static_cast<double>(indices.size()));
+  for (std::size_t i = 0; i < indices.size(); ++i)
+    product *= std::pow(indices[i], (weights.empty() ? 1.0 : weights[i]) / count);
   return product;
 }
 

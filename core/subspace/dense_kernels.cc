@@ -23,14 +23,6 @@ void dorgqr_(const int* m, const int* n, const int* k, double* a, const int* lda
 void dgesdd_(const char* jobz, const int* m, const int* n, double* a, const int* lda, double* s, double* u,
              const int* ldu, double* vt, const int* ldvt, double* work, const int* lwork, int* iwork,
              int* info);
-void dgebrd_(const int* m, const int* n, double* a, const int* lda, double* d, double* e, double* tauq,
-             double* taup, double* work, const int* lwork, int* info);
-void dormbr_(const char* vect, const char* side, const char* trans, const int* m, const int* n, const int* k,
-             const double* a, const int* lda, const double* tau, double* c, const int* ldc, double* work,
-             const int* lwork, int* info);
-void dbdsqr_(const char* uplo, const int* n, const int* ncvt, const int* nru, const int* ncc, double* d,
-             double* e, double* vt, const int* ldvt, double* u, const int* ldu, double* c, const int* ldc,
-             double* work, int* info);
 }
 
 namespace fatmc {
@@ -89,21 +81,31 @@ void append_rows(Eigen::Ref<Eigen::MatrixXd> r, Eigen::Ref<Eigen::MatrixXd> rows
   append_rows(r, none, rows, rest);
 }
 
-void triangularise(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Index columns) {
-  FATMC_CHECK(a.rows() >= columns && a.cols() >= columns, "triangularise: shape");
-  const int m = as_int(a.rows()), n = as_int(columns), k = as_int(a.cols() - columns),
-            lda = leading(a.outerStride(), m);
+void triangularise(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Ref<Eigen::MatrixXd> rhs) {
+  FATMC_CHECK(a.rows() >= a.cols() && a.rows() == rhs.rows(), "triangularise: shapes");
+  const int m = as_int(a.rows()), n = as_int(a.cols()), k = as_int(rhs.cols()),
+            lda = leading(a.outerStride(), m), ldb = leading(rhs.outerStride(), m);
   std::vector<double> tau(static_cast<std::size_t>(n));
   with_workspace([&](double* work, const int* length,
                      int* info) { dgeqrf_(&m, &n, a.data(), &lda, tau.data(), work, length, info); },
                  "dgeqrf");
-  if (k == 0) return;
-  double* rest = a.data() + columns * a.outerStride();
   with_workspace(
       [&](double* work, const int* length, int* info) {
-        dormqr_("L", "T", &m, &k, &n, a.data(), &lda, tau.data(), rest, &lda, work, length, info);
+        dormqr_("L", "T", &m, &k, &n, a.data(), &lda, tau.data(), rhs.data(), &ldb, work, length, info);
       },
       "dormqr");
+}
+
+Eigen::MatrixXd zero_triangle(Eigen::Index size) {
+  Eigen::MatrixXd out(size, size);
+  for (Eigen::Index j = 0; j < size; ++j) out.col(j).head(j + 1).setZero();
+  return out;
+}
+
+Eigen::MatrixXd upper_triangle(const Eigen::Ref<const Eigen::MatrixXd>& of) {
+  Eigen::MatrixXd out(of.cols(), of.cols());
+  for (Eigen::Index j = 0; j < of.cols(); ++j) out.col(j).head(j + 1) = of.col(j).head(j + 1);
+  return out;
 }
 
 void add_product(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::Ref<const Eigen::MatrixXd>& b,
@@ -151,50 +153,24 @@ void orthonormalise(Eigen::MatrixXd& a) {
                  "dorgqr");
 }
 
-bool right_singular(Eigen::MatrixXd& a, ThinSvd& out) {
-  if (a.rows() > a.cols()) {  // its triangle has the same right vectors
-    triangularise(a, a.cols());
-    a = a.topRows(a.cols()).triangularView<Eigen::Upper>().toDenseMatrix();
-  }
-  const int m = as_int(a.rows()), n = as_int(a.cols()), small = std::min(m, n);
-  out.s.resize(small);
-  Eigen::MatrixXd u(m, small), vt(small, n);
-  std::vector<int> integers(static_cast<std::size_t>(8 * small));
-  double size = 0.0;
-  int info = 0, length = -1;
-  dgesdd_("S", &m, &n, a.data(), &m, out.s.data(), u.data(), &m, vt.data(), &small, &size, &length,
-          integers.data(), &info);
-  length = std::max(1, static_cast<int>(size));
-  std::vector<double> work(static_cast<std::size_t>(length));
-  dgesdd_("S", &m, &n, a.data(), &m, out.s.data(), u.data(), &m, vt.data(), &small, work.data(), &length,
-          integers.data(), &info);
-  out.v = vt.transpose();
-  return info == 0 && out.s.allFinite();
-}
-
-bool rotate_to_singular_directions(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Ref<Eigen::MatrixXd> rhs,
-                                   Eigen::VectorXd& s) {
-  a.triangularView<Eigen::StrictlyLower>().setZero();
-  const int n = as_int(a.cols()), k = as_int(rhs.cols()), lda = leading(a.outerStride(), n),
-            ldc = leading(rhs.outerStride(), n), zero = 0, one = 1;
-  Eigen::VectorXd e(std::max(1, n)), tau_q(n), tau_p(n);
+bool singular_decomposition(Eigen::MatrixXd& a, Eigen::MatrixXd& u, Eigen::VectorXd& s, Eigen::MatrixXd& v) {
+  FATMC_CHECK(a.rows() == a.cols(), "singular_decomposition: shape");
+  const int n = as_int(a.cols());
   s.resize(n);
-  with_workspace(
-      [&](double* work, const int* length, int* info) {
-        dgebrd_(&n, &n, a.data(), &lda, s.data(), e.data(), tau_q.data(), tau_p.data(), work, length, info);
-      },
-      "dgebrd");
-  with_workspace(
-      [&](double* work, const int* length, int* info) {
-        dormbr_("Q", "L", "T", &n, &k, &n, a.data(), &lda, tau_q.data(), rhs.data(), &ldc, work, length,
-                info);
-      },
-      "dormbr");
-  std::vector<double> work(static_cast<std::size_t>(4 * n));
-  double none = 0.0;
+  u.resize(n, n);
+  Eigen::MatrixXd vt(n, n);
+  std::vector<int> integers(static_cast<std::size_t>(8 * n));
+  std::vector<double> work(1);
   int info = 0;
-  dbdsqr_("U", &n, &zero, &zero, &k, s.data(), e.data(), &none, &one, &none, &one, rhs.data(), &ldc,
-          work.data(), &info);
+  for (int length : {-1, 0}) {  // asks for its workspace, then runs
+    if (length == 0) {
+      length = std::max(1, static_cast<int>(work.front()));
+      work.resize(static_cast<std::size_t>(length));
+    }
+    dgesdd_("S", &n, &n, a.data(), &n, s.data(), u.data(), &n, vt.data(), &n, work.data(), &length,
+            integers.data(), &info);
+  }
+  v = vt.transpose();
   return info == 0 && s.allFinite();
 }
 

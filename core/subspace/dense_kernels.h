@@ -16,9 +16,14 @@ void append_rows(Eigen::Ref<Eigen::MatrixXd> r, Eigen::Ref<Eigen::MatrixXd> rhs,
 /// The same without right-hand sides.
 void append_rows(Eigen::Ref<Eigen::MatrixXd> r, Eigen::Ref<Eigen::MatrixXd> rows);
 
-/// QR of the first `columns` columns of `a` (at least as many rows) in place, all of `a` being multiplied by
-/// Q^T: [R B; 0 rest], with the reflections left below the diagonal of R.
-void triangularise(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Index columns);
+/// QR of `a` (at least as many rows as columns) in place, R above the reflections; rhs <- Q^T rhs.
+void triangularise(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Ref<Eigen::MatrixXd> rhs);
+
+/// An upper triangle of this size, zero; what stands below the diagonal is not set. Of a large one the memory
+/// there is never touched, so that it takes half of the square.
+Eigen::MatrixXd zero_triangle(Eigen::Index size);
+/// A copy of the upper triangle alone.
+Eigen::MatrixXd upper_triangle(const Eigen::Ref<const Eigen::MatrixXd>& of);
 
 /// out += a b.
 void add_product(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::Ref<const Eigen::MatrixXd>& b,
@@ -36,16 +41,7 @@ void solve_triangle(const Eigen::Ref<const Eigen::MatrixXd>& triangle, Eigen::Re
 /// Columns of `a` become orthonormal, spanning what they spanned. More rows than columns.
 void orthonormalise(Eigen::MatrixXd& a);
 
-struct ThinSvd {
-  Eigen::VectorXd s;  ///< descending
-  Eigen::MatrixXd v;  ///< right singular vectors, columns x min(rows, columns)
-};
-/// Singular values and right vectors; false where the iteration fails. `a` is destroyed.
-bool right_singular(Eigen::MatrixXd& a, ThinSvd& out);
-
-/// Singular values of the upper triangle of `a`, and rhs <- (left singular vectors)^T rhs; no vector is
-/// formed. `a` is destroyed, below the diagonal too. False where the iteration fails.
-bool rotate_to_singular_directions(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Ref<Eigen::MatrixXd> rhs,
-                                   Eigen::VectorXd& s);
+/// a = u diag(s) v^T of a square matrix, s descending; false where the iteration fails. `a` is destroyed.
+bool singular_decomposition(Eigen::MatrixXd& a, Eigen::MatrixXd& u, Eigen::VectorXd& s, Eigen::MatrixXd& v);
 
 }  // namespace fatmc

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "core/subspace/leading_subspace.h"
 #include "core/subspace/nested_regression.h"
@@ -32,12 +33,12 @@ void visit_failure(const FamilyPlan& plan, int past, int future, const Error& er
 }
 
 void visit_past(const FamilyPlan& plan, const PastProducts& products, double lambda, const Visit& visit) {
-  Eigen::MatrixXd start;
+  LeadingTriplets start;
   for (const int future : plan.futures) {
     if (future > products.past) break;
     const Eigen::Index size = static_cast<Eigen::Index>(future) * products.n_y;
     const int states = static_cast<int>(std::min<Eigen::Index>(plan.highest_order, size));
-    const auto leading = leading_subspace(products.triangle.topLeftCorner(size, size), states, start);
+    auto leading = leading_triplets(products.triangle.topLeftCorner(size, size), states, start);
     if (!leading) {
       visit_failure(plan, products.past, future, leading.error(), visit);
       continue;
@@ -48,7 +49,7 @@ void visit_past(const FamilyPlan& plan, const PastProducts& products, double lam
       if (model) model->lambda = lambda;
       visit({products.past, future, order}, model);
     }
-    start = leading->u;
+    start = std::move(*leading);
   }
 }
 

@@ -6,6 +6,7 @@
 #include "core/base/check.h"
 #include "core/subspace/dense_kernels.h"
 #include "core/subspace/predictor_regression.h"
+#include "core/subspace/singular_rotation.h"
 
 namespace fatmc {
 namespace {
@@ -23,16 +24,10 @@ NestedRegression::NestedRegression(std::span<const Maneuver> maneuvers, int past
   for (const Maneuver& maneuver : maneuvers) longest = std::max(longest, maneuver.samples());
   PredictorEquations data = predictor_equations(maneuvers, past, past, longest);
   const Eigen::Index m = unknowns(), rows = data.phi.rows();
-  // The regressors alone are factored: a right-hand side goes through the reflections.
-  Eigen::MatrixXd all(rows, m + n_z());
-  all.leftCols(m) = data.phi;
-  all.rightCols(n_z()) = data.z;
-  data = {};
-  triangularise(all, m);
-  plain_.r = Eigen::MatrixXd::Zero(m, m);
-  for (Eigen::Index j = 0; j < m; ++j) plain_.r.col(j).head(j + 1) = all.col(j).head(j + 1);
-  plain_.b = all.topRightCorner(m, n_z());
-  residual_ = all.block(m, m + n_u_, rows - m, n_y_).colwise().squaredNorm();
+  triangularise(data.phi, data.z);
+  plain_.r = upper_triangle(data.phi.topRows(m));
+  plain_.b = data.z.topRows(m);
+  residual_ = data.z.bottomRightCorner(rows - m, n_y_).colwise().squaredNorm();
 }
 
 Result<NestedRegression> NestedRegression::make(std::span<const Maneuver> maneuvers, int past) {
@@ -71,10 +66,11 @@ void NestedRegression::shorten(int past) {
 Result<double> NestedRegression::chosen(Regularization rule) {
   const Eigen::Index m = unknowns();
   ridge_lambda_.reset();
-  ridge_.r = plain_.r.topLeftCorner(m, m);  // the storage that the ridge takes afterwards
+  ridge_.r.resize(0, 0);
+  Eigen::MatrixXd square = upper_triangle(r());
   Eigen::MatrixXd beta = plain_.b.block(0, n_u_, m, n_y_);
   RidgeSpectrum spectrum;
-  if (!rotate_to_singular_directions(ridge_.r, beta, spectrum.s))
+  if (!rotate_to_singular_directions(square, beta, spectrum.s))
     return fail("the singular values of the regression on the past did not converge");
   spectrum.energy = beta.rowwise().squaredNorm();
   spectrum.unexplained = residual_.sum();
@@ -84,7 +80,7 @@ Result<double> NestedRegression::chosen(Regularization rule) {
 
 void NestedRegression::factor_ridge(double lambda) {
   const Eigen::Index m = unknowns();
-  ridge_.r = plain_.r.topLeftCorner(m, m);
+  ridge_.r = upper_triangle(r());
   ridge_.b = plain_.b.topRows(m);
   for (Eigen::Index first = 0; first < m; first += kRidgeRows) {
     // Rows of lambda I touch nothing left of their own columns.

@@ -40,7 +40,8 @@ class NestedRegression {
   [[nodiscard]] Eigen::Index unknowns() const { return static_cast<Eigen::Index>(past_) * n_z(); }
   /// M = sum (N_j - p).
   [[nodiscard]] Eigen::Index equations() const;
-  /// [Phi^T Z^T] = Q [R B; 0 *], Z = [U; Y] of the same samples: upper triangular, p n_z x p n_z, zero below.
+  /// [Phi^T Z^T] = Q [R B; 0 *], Z = [U; Y] of the same samples: upper triangular, p n_z x p n_z; not set
+  /// below.
   [[nodiscard]] auto r() const { return plain_.r.topLeftCorner(unknowns(), unknowns()); }
   /// p n_z x n_z.
   [[nodiscard]] auto b() const { return plain_.b.topRows(unknowns()); }

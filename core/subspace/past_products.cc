@@ -26,14 +26,14 @@ Eigen::MatrixXd product_triangle(const NestedRegression& regression, const Eigen
   const Eigen::Index m = regression.unknowns();
   Eigen::MatrixXd padded = Eigen::MatrixXd::Zero(m + static_cast<Eigen::Index>(kLags) * n_z, n_y);
   padded.topRows(m) = xi.transpose();
-  Eigen::MatrixXd triangle =
-      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(past) * n_y, static_cast<Eigen::Index>(past) * n_y);
+  Eigen::MatrixXd triangle = zero_triangle(static_cast<Eigen::Index>(past) * n_y);
   const auto r = regression.r();
   for (int first = (past - 1) / kLags * kLags; first >= 0; first -= kLags) {
     const int lags = std::min(kLags, past - first);
     const Eigen::Index columns = static_cast<Eigen::Index>(past - first) * n_y;
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(lags * n_z, columns);
-    for (int inner = first; inner < past; inner += kLags) {
+    Eigen::MatrixXd rows = hankel_rows(padded, n_z, past, first, lags);
+    multiply_triangle(r.block(first * n_z, first * n_z, lags * n_z, lags * n_z), false, rows);
+    for (int inner = first + kLags; inner < past; inner += kLags) {
       const int inner_lags = std::min(kLags, past - inner);
       add_product(r.block(first * n_z, inner * n_z, lags * n_z, inner_lags * n_z),
                   hankel_rows(padded, n_z, past, inner, inner_lags),

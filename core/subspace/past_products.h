@@ -21,7 +21,7 @@ namespace fatmc {
 struct PastProducts {
   int past = 0, n_u = 0, n_y = 0;
   Eigen::Index samples = 0;  ///< t = p ... N-2 of all maneuvers
-  Eigen::MatrixXd triangle;  ///< T, p n_y x p n_y
+  Eigen::MatrixXd triangle;  ///< T, p n_y x p n_y; not set below the diagonal
   /// Block i: Xi_{i+1}, the first block column of LK, p n_y x n_z.
   Eigen::MatrixXd first_column;
   /// sum LK phi_t z_t^T over t = p ... N-1, (p + 1) n_y x n_z; a block row of zeros stands below.

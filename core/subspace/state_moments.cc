@@ -101,7 +101,7 @@ Status solve_residual(const OrderMoments& m, double samples, ScaledModel& model)
 
 }  // namespace
 
-StateMoments state_moments(const PastProducts& products, const LeadingSubspace& leading, int future,
+StateMoments state_moments(const PastProducts& products, const LeadingTriplets& leading, int future,
                            int states) {
   const Eigen::Index n_y = products.n_y, size = future * n_y,
                      n = std::min<Eigen::Index>(states, leading.u.cols());
@@ -113,22 +113,20 @@ StateMoments state_moments(const PastProducts& products, const LeadingSubspace& 
   out.samples = static_cast<double>(products.samples);
   out.s = leading.s.head(n);
   const Eigen::MatrixXd u = leading.u.leftCols(n), shifted = shifted_product(products, u);
-  Eigen::MatrixXd w = u;
-  multiply_triangle(products.triangle.topLeftCorner(size, size), false, w);
   // S^-1 U^T
   const Eigen::MatrixXd rows = out.s.cwiseInverse().asDiagonal() * u.transpose();
-  const Eigen::MatrixXd w_scaled = w * out.s.cwiseInverse().asDiagonal(),
-                        shifted_scaled = shifted * out.s.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd w = leading.w.leftCols(n),  // T U S^-1
+      shifted_scaled = shifted * out.s.cwiseInverse().asDiagonal();
   const Eigen::Index common = std::min(w.rows(), shifted.rows());
   const Eigen::MatrixXd g = rows * products.first_column.topRows(size),
                         shifted_z = rows * products.states_z.middleRows(n_y, size),
                         last_v = rows * products.last_states.topRows(size),
                         last_next = g * products.last_z + rows * products.last_states.middleRows(n_y, size);
-  out.vv = transposed_product(w_scaled, w_scaled) - last_v * last_v.transpose();
+  out.vv = transposed_product(w, w) - last_v * last_v.transpose();
   out.vz = rows * products.states_z.topRows(size);
   out.next_z = g * products.zz + shifted_z - last_next * products.last_z.transpose();
   out.next_v = g * out.vz.transpose() +
-               transposed_product(shifted_scaled.topRows(common), w_scaled.topRows(common)) -
+               transposed_product(shifted_scaled.topRows(common), w.topRows(common)) -
                last_next * last_v.transpose();
   out.vz -= last_v * products.last_z.transpose();
   out.next_next = g * products.zz * g.transpose() + g * shifted_z.transpose() + shifted_z * g.transpose() +

@@ -32,7 +32,7 @@ struct StateMoments {
 };
 
 /// Of as many states as `leading` has directions wanted: `states` of them.
-StateMoments state_moments(const PastProducts& products, const LeadingSubspace& leading, int future,
+StateMoments state_moments(const PastProducts& products, const LeadingTriplets& leading, int future,
                            int states);
 
 /// The model of order n <= s.size(): A, B, C and K in the coordinates x = S^1/2 v of (A.13). Fails as

@@ -65,6 +65,20 @@ refused(["--model", "is not kept"], "export", db, "--model", "60,40,13", "-o", p
 refused(["--cell", "open loop"], "export", db, "--cell", "hover", "-o", path("no.toml"))
 assert not os.path.exists(path("no.toml"))
 
+# The flight test as records, and a model of the study beside one of them.
+run("export", db, "--records", path("flights"))
+assert sorted(os.listdir(path("flights")))[:2] == ["multistep-1.csv", "multistep-1.toml"] and len(os.listdir(path("flights"))) == 32
+sweep = np.genfromtxt(path("flights/sweep-3.csv"), delimiter=",", names=True)
+assert sweep.dtype.names == ("delta_x", "delta_y", "delta_p", "delta_0", "u", "v", "w", "p", "q", "r", "phi", "theta")
+assert len(sweep) == 2485 and 5.0 < abs(sweep["delta_y"]).max() < 15.0  # 10 % at most, and the pulses that hold
+run("diagnose", "--model", path("candidate.toml"), "--record", path("flights/sweep-3.csv"), "--holdout",
+    path("flights/sweep-4.csv"), "-o", path("diagnosis"))
+with open(path("diagnosis/diagnosis.json"), encoding="utf-8") as f:
+    diagnosis = json.load(f)
+assert diagnosis["verdict"] in ("named", "class", "unknown") and len(diagnosis["incoherent"]) == 8, diagnosis
+run("diagnose", "--model", "campaigns/models/actfhs_60kt.toml", "--record", path("flights/sweep-3.csv"), "-o", path("truth"))
+refused(["-o", "--records"], "export", db)
+
 # Identification in open loop.
 random = np.random.default_rng(1)
 a = np.array([[0.9, 0.3, 0.0], [-0.3, 0.9, 0.0], [0.0, 0.1, 0.7]]) * 0.95
@@ -109,6 +123,19 @@ assert all(c["norm"] <= three["limit"] for c in three["candidates"])
 for output in three["outputs"]:
     assert output["median_variance_accounted_for"] > 99.0, output
     assert 0.0 <= output["covered_percent"] <= 100.0 and output["spread_rms"] < output["error_rms"], output
+# Weights of the overall d1 (H 11): with the first output alone the best of an order need not be the best of both.
+run("select", path("open.csv"), "--pasts", "10,5,25", "--orders", "3,3", "--hold-back", "0.4", "--weights", "2,0", "-o",
+    path("first"))
+with open(path("first/candidates.json"), encoding="utf-8") as f:
+    weighted = json.load(f)["orders"][0]["candidates"][0]
+run("identify", path("open.csv"), "--past", str(weighted["past"]), "--future", str(weighted["future"]), "--order", "3",
+    "--hold-back", "0.4", "--weights", "2,0", "-o", path("again"))
+with open(path("again/model.json"), encoding="utf-8") as f:
+    validation = json.load(f)["validation"][0]
+assert abs(validation["overall_agreement"] - validation["outputs"][0]["agreement"]) < 1e-12, validation
+assert abs(validation["overall_agreement"] - weighted["agreement"]) < 1e-6, (validation, weighted)
+refused(["--weights", "y1, y2"], "select", path("open.csv"), "--hold-back", "0.4", "--weights", "1", "-o", path("none"))
+refused(["--weights", "at least one"], "identify", path("open.csv"), "--weights", "0,0", "-o", path("none"))
 refused(["--hold-back"], "select", path("open.csv"), "-o", path("none"))
 refused(["--pasts"], "select", path("open.csv"), "--hold-back", "0.4", "--pasts", "30,5,20", "-o", path("none"))
 assert not os.path.exists(path("none"))

@@ -154,4 +154,4 @@ def gainless(text):
 refused(variant("gainless", lambda row: None, gainless), "controller_gain")
 refused(variant("two", lambda row: None, lambda text: gainless(text).replace('output = ["p", "q", "r"]', 'output = ["p", "q"]')), "output", "three")
 refused(place("absent.csv"), "does not exist")
-refused(hidden, "kind", "state_space", model=write("other_model.toml", 'kind = "state_space"\n'))
+refused(hidden, "kind", "state_space", model=write("other_model.toml", 'kind = "spectrum"\n'))

@@ -84,5 +84,14 @@ TEST(IndexOfAgreement, IsZeroOverallWhereOneOutputIs) {
   EXPECT_NEAR(overall_index_of_agreement(std::array{0.81, 1.0}), 0.9, 1e-15);
 }
 
+TEST(IndexOfAgreement, CountsAnOutputByItsWeight) {
+  const std::array d = {0.81, 0.64};
+  EXPECT_EQ(overall_index_of_agreement(d, std::array{1.0, 1.0}), overall_index_of_agreement(d));
+  // H (11) by hand: 0.81^(2/2) 0.64^(0/2) and 0.81^(1/4) 0.64^(3/4) with 0.81^(1/4) = sqrt(0.9), 0.64^(3/4) = 0.8^(3/2).
+  EXPECT_NEAR(overall_index_of_agreement(d, std::array{2.0, 0.0}), 0.81, 1e-15);
+  EXPECT_NEAR(overall_index_of_agreement(d, std::array{0.5, 1.5}), std::sqrt(0.9 * 0.8 * 0.8 * 0.8), 1e-15);
+  EXPECT_NEAR(overall_index_of_agreement(std::array{0.0, 0.81}, std::array{0.0, 1.0}), 0.9, 1e-15);
+}
+
 }  // namespace
 }  // namespace fatmc

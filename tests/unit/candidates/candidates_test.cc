@@ -7,6 +7,7 @@
 #include "campaigns/base/prepared_trials.h"
 #include "campaigns/candidates/candidates_spec.h"
 #include "campaigns/candidates/flight_test.h"
+#include "campaigns/candidates/maneuver_validation.h"
 #include "campaigns/candidates/model_analysis.h"
 #include "campaigns/candidates/model_table.h"
 #include "campaigns/candidates/summary.h"
@@ -44,6 +45,11 @@ CandidatesSpec decoded(const CampaignSpec& spec, std::uint32_t cell = 0) {
   return *decode_candidates(*spec_of_cell(spec, cell));
 }
 
+/// One row, for as long as it lives.
+RowSource source_of(const TrialRow& row) {
+  return [&row](std::uint32_t, const std::function<void(const TrialRow&)>& visit) { visit(row); };
+}
+
 TEST(CandidatesSpec, TheShippedOneHasTheWindowsAndModelsOfThePaper) {
   const CandidatesSpec spec = decoded(shipped_spec());
   ASSERT_EQ(spec.identification.pasts.size(), 99U);
@@ -75,6 +81,11 @@ TEST(CandidatesSpec, WrongValuesAreRefusedWithTheirPlace) {
   const auto refused = prepare_trials(kTrialStudy, spec, 0);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("the largest for these sweeps is 994"), std::string::npos);
+  spec = shipped_spec();
+  Tree::Array none;
+  for (int k = 0; k < kOutputs; ++k) none.items.push_back({0.0, {}, 0});
+  at(spec.tree, {"validation"}).set("weights", {none, {}, 0});
+  EXPECT_EQ(prepare_trials(kTrialStudy, spec, 0).error().key, "validation.weights");
   spec = shipped_spec();
   at(spec.tree, {"model"}).set("outputs", at(spec.tree, {"model", "inputs"}));
   const auto channels = prepare_trials(kTrialStudy, spec, 0);
@@ -114,8 +125,8 @@ TEST(FlightTest, WithoutNoiseAndGustsTheMultistepsAreTheModelsResponse) {
   const FlownTest flown = fly_test(own.truth, own.flight, spec.trial_seed({0, 0}));
   const auto validation = validate(*modal_model(own.truth.model), flown.multisteps);
   ASSERT_TRUE(validation.has_value());
-  EXPECT_NEAR(validation->agreement, 1.0, 1e-9);
-  EXPECT_NEAR(validation->rms, 0.0, 1e-8);
+  EXPECT_NEAR(validation->overall.agreement, 1.0, 1e-9);
+  EXPECT_NEAR(validation->overall.rms, 0.0, 1e-8);
 }
 
 TEST(FlightTest, InGustsTheTruthItselfIsAdequateAndNoMore) {
@@ -124,7 +135,7 @@ TEST(FlightTest, InGustsTheTruthItselfIsAdequateAndNoMore) {
   const FlownTest flown = fly_test(own.truth, own.flight, spec.trial_seed({0, 0}));
   const auto validation = validate(*modal_model(own.truth.model), flown.multisteps);
   ASSERT_TRUE(validation.has_value());
-  EXPECT_EQ(agreement_rating(validation->agreement), "adequate") << validation->agreement;
+  EXPECT_EQ(agreement_rating(validation->overall.agreement), "adequate") << validation->overall.agreement;
 }
 
 TEST(FlightTest, TheScasFeedsBackTheMeasuredOutputsASampleLate) {
@@ -236,8 +247,7 @@ TEST(CandidatesTrial, ModelsComeBackFromTheirRowsAsTheyWereValidated) {
   const auto cell = prepare_trials(kTrialStudy, spec, 0);
   ASSERT_TRUE(cell);
   const TrialRow stored = (*cell)->run(1);  // p = 20
-  const ModelTable table = read_models(
-      0, [&](std::uint32_t, const std::function<void(const TrialRow&)>& visit) { visit(stored); });
+  const ModelTable table = *read_models(0, source_of(stored));
   const FlownTest flown = recorded_test(own.truth, own.flight, spec.trial_seed({0, 0}));
   int compared = 0;
   for (std::size_t i = 0; i < table.models.size(); ++i) {
@@ -246,11 +256,78 @@ TEST(CandidatesTrial, ModelsComeBackFromTheirRowsAsTheyWereValidated) {
     ASSERT_EQ(analysis->model.model.a.rows(), table.models[i].order);
     const auto again = validate(analysis->model, flown.multisteps);
     ASSERT_TRUE(again.has_value());
-    EXPECT_NEAR(again->agreement, table.models[i].agreement, 1e-10);
+    EXPECT_NEAR(again->overall.agreement, table.models[i].agreement, 1e-10);
     EXPECT_NEAR(again->roll_rms, table.models[i].roll_rms, 1e-10);
+    EXPECT_NEAR(again->overall.theil, table.models[i].theil, 1e-10);
+    for (std::size_t k = 0; k < kOutputs; ++k)
+      EXPECT_NEAR(again->overall.output_agreement[k], table.models[i].output_agreement[k], 1e-10);
     ++compared;
   }
   EXPECT_GE(compared, 1);  // of n = 12 and 18, those with a continuous counterpart
+}
+
+TEST(CandidatesTrial, RowsOfAnotherVersionOfTheStudyAreRefusedWithWhatIsMissing) {
+  const auto cell = prepare_trials(kTrialStudy, tiny_spec(), 0);
+  ASSERT_TRUE(cell);
+  const TrialRow whole = (*cell)->run(1);
+  ASSERT_TRUE(read_models(0, source_of(whole)));
+  TrialRow without = whole;
+  std::erase_if(without.arrays, [](const auto& array) { return array.first == kTheil; });
+  const auto refused = read_models(0, source_of(without));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().key, kTheil);
+  EXPECT_NE(refused.error().message.find("run the spec into a new one"), std::string::npos);
+  TrialRow shorter = whole;
+  for (auto& [name, values] : shorter.arrays) {
+    if (name == kMagnitude) values.pop_back();
+  }
+  EXPECT_EQ(read_models(0, source_of(shorter)).error().key, kMagnitude);
+  TrialRow uncounted = whole;
+  std::erase_if(uncounted.metrics, [](const auto& metric) { return metric.first == kNotContinuous; });
+  EXPECT_EQ(read_models(0, source_of(uncounted)).error().key, kNotContinuous);
+  CampaignSpec spec = tiny_spec();
+  EXPECT_EQ(tables(spec, source_of(without)).error().key, kTheil);
+  EXPECT_EQ(figures(spec, source_of(without)).error().key, kTheil);
+}
+
+TEST(OverallAccuracy, IsTheHandCaseOfTwoOutputs) {
+  Eigen::MatrixXd measured(4, 2), simulated(4, 2);
+  measured << 1, 1, -1, -1, 2, 1, -2, -1;
+  simulated << 0.5, 1, -0.5, -1, 1, 1, -1, -1;  // half of the first, all of the second
+  const Eigen::RowVectorXd units = Eigen::RowVectorXd::Constant(2, 2.0);
+  const auto equal = overall_accuracy(measured, simulated, units);
+  ASSERT_TRUE(equal);
+  EXPECT_NEAR(equal->output_agreement[0], 2.0 / 3.0, 1e-15);  // 1 - 3/(6 + 3)
+  EXPECT_NEAR(equal->output_agreement[1], 1.0, 1e-15);
+  EXPECT_NEAR(equal->agreement, std::sqrt(2.0 / 3.0), 1e-15);
+  // Squares of the error 2.5, of the measured 10 + 4, of the simulated 2.5 + 4; units cancel in Theil's coefficient.
+  EXPECT_NEAR(equal->rms, 2.0 * std::sqrt(2.5 / 8.0), 1e-15);
+  EXPECT_NEAR(equal->theil, std::sqrt(2.5) / (std::sqrt(14.0) + std::sqrt(6.5)), 1e-15);
+  const std::vector<double> weights = {2.0, 0.0};
+  EXPECT_NEAR(overall_accuracy(measured, simulated, units, weights)->agreement, 2.0 / 3.0, 1e-15);
+  simulated(0, 0) = 1e200;
+  EXPECT_FALSE(overall_accuracy(measured, simulated, units));
+}
+
+TEST(CandidatesTrial, WeightsOfTheSpecChangeTheOverallAgreementAlone) {
+  CampaignSpec spec = tiny_spec();
+  const auto equal = prepare_trials(kTrialStudy, spec, 0);
+  Tree::Array weights;
+  for (const double w : {0.0, 0.0, 0.0, 8.0, 0.0, 0.0, 0.0, 0.0}) weights.items.push_back({w, {}, 0});
+  at(spec.tree, {"validation"}).set("weights", {weights, {}, 0});
+  const auto roll = prepare_trials(kTrialStudy, spec, 0);
+  ASSERT_TRUE(equal && roll);
+  const TrialRow one = (*equal)->run(1), other = (*roll)->run(1);
+  EXPECT_EQ(*one.array(kOutputAgreement), *other.array(kOutputAgreement));
+  EXPECT_EQ(*one.array(kTheil), *other.array(kTheil));
+  const std::vector<double>&overall = *one.array(kAgreement), &weighted = *other.array(kAgreement);
+  for (std::size_t i = 0; i < overall.size(); ++i) {
+    const double* d1 = one.array(kOutputAgreement)->data() + i * kOutputs;
+    EXPECT_NEAR(weighted[i], d1[3], 1e-12);
+    double product = 1.0;
+    for (int k = 0; k < kOutputs; ++k) product *= d1[k];
+    EXPECT_NEAR(overall[i], std::pow(product, 1.0 / 8.0), 1e-12);
+  }
 }
 
 ModelRow model(int past, double agreement, double norm) {

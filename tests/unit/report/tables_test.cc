@@ -68,6 +68,14 @@ TEST(RateMeter, ForgetsWhatIsLongPast) {
   EXPECT_DOUBLE_EQ(meter.seconds_left(80), 10.0);
 }
 
+TEST(RateMeter, OfLongTrialsIsTakenOverSeveral) {
+  cli::RateMeter meter;
+  for (int second = 0; second <= 1000; ++second)  // one trial every hundred seconds
+    meter.add(cli::RateMeter::Seconds(second), static_cast<std::uint64_t>(second / 100));
+  EXPECT_NEAR(meter.per_second(), 0.01, 0.001);
+  EXPECT_NEAR(meter.seconds_left(5), 500.0, 50.0);
+}
+
 TEST(RateMeter, KnowsNothingAtFirst) {
   EXPECT_LT(cli::RateMeter().seconds_left(10), 0.0);
   EXPECT_EQ(cli::clock_text(-1.0), "?");

@@ -4,10 +4,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <complex>
 #include <limits>
 #include <vector>
 
+#include "core/robust/held_sampling.h"
 #include "tests/unit/robust/random_plant.h"
 
 namespace fatmc {
@@ -72,6 +74,25 @@ TEST(StabiliseNominalModel, GivesNothingForAMatrixThatIsNotFinite) {
   SampledModel model = unstable_model();
   model.a(0, 0) = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(stabilise(model).has_value());
+}
+
+TEST(HeldSampling, HasTheKnownFormsOfALagAndOfADoubleIntegrator) {
+  const auto matrix = [](double value) { return Eigen::MatrixXd::Constant(1, 1, value); };
+  const auto lag = sample_held({matrix(-2.0), matrix(3.0), matrix(1.0), matrix(0.5)}, 0.25);
+  ASSERT_TRUE(lag);
+  EXPECT_NEAR(lag->a(0, 0), std::exp(-0.5), 1e-15);
+  EXPECT_NEAR(lag->b(0, 0), 1.5 * (1.0 - std::exp(-0.5)), 1e-15);
+  EXPECT_EQ(lag->d(0, 0), 0.5);
+  Eigen::MatrixXd a(2, 2), b(2, 1);
+  a << 0.0, 1.0, 0.0, 0.0;
+  b << 0.0, 1.0;
+  const auto integrators =
+      sample_held({a, b, Eigen::MatrixXd::Identity(2, 2), Eigen::MatrixXd::Zero(2, 1)}, 0.5);
+  ASSERT_TRUE(integrators);
+  EXPECT_NEAR(integrators->a(0, 1), 0.5, 1e-15);
+  EXPECT_NEAR(integrators->b(0, 0), 0.125, 1e-15);
+  EXPECT_NEAR(integrators->b(1, 0), 0.5, 1e-15);
+  EXPECT_FALSE(sample_held({matrix(1e6), matrix(1.0), matrix(1.0), matrix(0.0)}, 1.0));
 }
 
 }  // namespace
