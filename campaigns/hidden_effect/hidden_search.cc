@@ -10,6 +10,7 @@
 #include "core/base/build_hash.h"
 #include "core/base/text.h"
 #include "core/discrepancy/basis_cache.h"
+#include "core/discrepancy/moment_filters.h"
 
 namespace fatmc::hidden_effect {
 namespace {
@@ -61,9 +62,9 @@ Result<std::unique_ptr<HiddenSearch>> HiddenSearch::create(const HiddenCell& cel
     auto grid = LpmGrid::create(periodic, {}, 3);
     if (!grid) return fail(grid.error());
     SearchLevel made;
-    made.model = std::make_unique<ModelSimulator>(cell.flown.model.aircraft, setup, cell.flown.model.effects,
-                                                  reference_signal(experiment, phases),
-                                                  FeatureExtractor(*layout, setup.gain));
+    made.model = std::make_unique<ModelSimulator>(
+        with_moment_filters({cell.flown.model.aircraft, setup, cell.flown.model.effects,
+                             reference_signal(experiment, phases), FeatureExtractor(*layout, setup.gain)}));
     if (const auto once = made.model->record({}, 0); !once) {
       Error error = once.error();
       if (error.key.empty()) error.message = "the model does not survive the experiment: " + error.message;

@@ -38,6 +38,7 @@ class HiddenEffectTrials final : public PreparedCell {
     if (cell_.tier.taken_out) {
       for (const Effect& e : drawn.effects) options.excluded.push_back(e.id);
     }
+    if (cell_.tier.draw.turbulence_error > 0.0) options.nuisances = variants_named({"turbulence"});
     const Diagnosis diagnosis = diagnose(Comparison(compared(**levels, *seen), 1), nullptr, options);
     write_answer(drawn, diagnosis, cell_.classes, row);
     write_gap(Comparison(compared(**levels, *unseen), 1), diagnosis, row);
@@ -126,7 +127,9 @@ class HiddenEffectTrials final : public PreparedCell {
     double after = before;
     if (!d.effects.empty() && d.verdict != Verdict::unknown) {
       // By the law of chance with the effects: those that make noise leave more of it, which is no gap.
-      const auto law = FittedLaw::of(unseen, d.effect_list(), ComparisonBasis::kBaseline);
+      std::vector<Effect> all = d.environment;
+      for (const FoundEffect& found : d.effects) all.push_back(found.effect);
+      const auto law = FittedLaw::of(unseen, all, ComparisonBasis::kBaseline);
       if (law) {  // else what was named cannot be flown: nothing is gained
         after = (unseen.discrepancy() - law->change()).cwiseQuotient(law->deviation()).squaredNorm() -
                 law->excess();

@@ -98,7 +98,14 @@ std::string diagnosis_json(const DiagnosisPage& page) {
         {"threshold", page.thresholds.energy},
         {"floor", page.thresholds.energy_mean}}},
       {"local", {{"value", e.local}, {"left", e.local_left}, {"threshold", page.thresholds.local}}},
+      {"level", {{"score", e.level}, {"limit", e.level_limit}}},
       {"leading", e.leading}};
+  out["evidence"]["moments"] = Json::array();
+  for (const MomentOutput& m : e.moments) {
+    out["evidence"]["moments"].push_back({{"moment", m.moment}, {"value", m.value}, {"mean", m.mean}});
+  }
+  out["environment"] = Json::array();  // estimated beside the effects, never named
+  for (const Effect& effect : d.environment) out["environment"].push_back(effect.text());
   out["notes"] = d.notes;
   return out.dump(2) + "\n";
 }

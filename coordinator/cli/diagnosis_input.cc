@@ -11,8 +11,9 @@
 #include "coordinator/cli/turbulence_level.h"
 #include "coordinator/input/record_file.h"
 #include "coordinator/input/toml_file.h"
-#include "core/base/text.h"
 #include "core/base/build_hash.h"
+#include "core/base/text.h"
+#include "core/discrepancy/moment_filters.h"
 
 namespace fatmc::cli {
 namespace {
@@ -186,7 +187,8 @@ Result<PreparedRecord> prepare_record(DiagnosedRecord& record, const DiagnosedMo
     if (*level > 0.0) out.basis.nuisances.push_back({*nuisance, 0.1 / std::log(1.2)});
     out.basis.excluded.emplace_back("turbulence");
   }
-  out.model = simulator(record.setup);
+  out.model = std::make_unique<ModelSimulator>(with_moment_filters(*simulator(record.setup)));
+  out.features = out.model->extractor().extract(record.record);
   if (Status status = check_against_model(record.record, *out.model, record.path); !status)
     return fail(status.error());
   return out;

@@ -205,7 +205,12 @@ Result<DiagnosisRun> run_diagnosis(const std::string& model_path, const std::vec
     const Comparison comparison(stack->compared(), threads);
     std::unique_ptr<Comparison> held_comparison;
     if (!held.empty()) held_comparison = std::make_unique<Comparison>(held_stack->compared(), threads);
-    Diagnosis diagnosis = diagnose(comparison, held_comparison.get(), {});
+    DiagnosisOptions search;
+    // What no one states is estimated with the effects.
+    const DiagnosedRecord& front = *training.front();
+    if (!front.turbulence_stated && front.setup.turbulence_m_s > 0.0)
+      search.nuisances.push_back(*nominal_effect("turbulence", {}));
+    Diagnosis diagnosis = diagnose(comparison, held_comparison.get(), search);
     if (round == 0) {
       FastLpm estimator(stack->prepared.front()->grid, 3);
       const ResponseMap& map = stack->bases.front()->map;
@@ -224,8 +229,8 @@ Result<DiagnosisRun> run_diagnosis(const std::string& model_path, const std::vec
       }
       if (training.size() == 1) {
         page.diagnosis.notes.emplace_back(
-            "One record at one level and speed: whether an effect depends on level or speed, it cannot "
-            "tell.");
+            "One record at one level and speed: whether a value depends on speed, it cannot tell; on level, "
+            "only by what a quadratic or cubic moment leaves on harmonics that are not excited.");
       }
       note_invisible(comparison, page.diagnosis);
       if (options.separability) out.separations = separations(comparison);
@@ -245,6 +250,7 @@ Result<DiagnosisRun> run_diagnosis(const std::string& model_path, const std::vec
       // A later round speaks of what is left; what has been found before stays.
       page.earlier.insert(page.earlier.end(), page.diagnosis.effects.begin(), page.diagnosis.effects.end());
       page.diagnosis.effects = diagnosis.effects;
+      page.diagnosis.notes.insert(page.diagnosis.notes.end(), diagnosis.notes.begin(), diagnosis.notes.end());
       page.diagnosis.verdict = diagnosis.verdict;
       page.diagnosis.members = diagnosis.members;
       page.diagnosis.separate_by = diagnosis.separate_by;

@@ -2,12 +2,13 @@
 
 #include <cstring>
 
+#include "core/discrepancy/moment_filters.h"
 #include "core/random/random_stream.h"
 
 namespace fatmc {
 namespace {
 
-constexpr std::string_view kTitle = "fatmc comparison basis 2\n";
+constexpr std::string_view kTitle = "fatmc comparison basis 3\n";
 
 class Writer {
  public:
@@ -61,6 +62,7 @@ void visit(Archive& archive, Basis& basis, Factor& factor) {
   archive.matrix(factor);
   archive.matrix(basis.baseline);
   archive.matrix(basis.dictionary.differences);
+  archive.matrix(basis.moment_differences);
   archive.matrix(basis.null.score);
   archive.matrix(basis.null.energy);
   archive.matrix(basis.null.group_mean);
@@ -120,7 +122,9 @@ std::optional<ComparisonBasis> parse_basis(const std::string& text, const std::s
   BasisFile::visit_map(reader, out.map);
   const auto atoms = static_cast<Eigen::Index>(out.dictionary.atoms.size());
   const bool fits = reader.done() && out.law.mean.size() == layout.size && factor.rows() == layout.size &&
-                    out.dictionary.differences.cols() == atoms && out.null.score.cols() == atoms &&
+                    out.dictionary.differences.cols() == atoms &&
+                    out.moment_differences.cols() == static_cast<Eigen::Index>(higher_moments().size()) &&
+                    out.null.score.cols() == atoms &&
                     out.null.group_mean.size() == static_cast<Eigen::Index>(out.groups.size()) &&
                     out.baseline.cols() == ComparisonBasis::kPaired &&
                     out.map.mean().size() == 9 * grid.line_count();

@@ -85,6 +85,7 @@ Comparison::Comparison(std::vector<ComparedRecord> records, int threads)
   discrepancy_.resize(size);
   atoms_.resize(size, dictionary().differences.cols());
   resonance_atoms_.resize(size, records_.front().basis->resonance_atoms.cols());
+  moment_atoms_.resize(size, records_.front().basis->moment_atoms.cols());
   white_baseline_.resize(size, ComparisonBasis::kPaired);
   std::vector<bool> usable(dictionary().atoms.size(), true);
   for (std::size_t i = 0; i < records_.size(); ++i) {
@@ -93,6 +94,7 @@ Comparison::Comparison(std::vector<ComparedRecord> records, int threads)
         basis.law.whiten(basis.layout, records_[i].features - basis.law.mean);
     atoms_.middleRows(first_[i], basis.layout.size) = basis.atoms;
     resonance_atoms_.middleRows(first_[i], basis.layout.size) = basis.resonance_atoms;
+    moment_atoms_.middleRows(first_[i], basis.layout.size) = basis.moment_atoms;
     for (int n = 0; n < ComparisonBasis::kPaired; ++n) {
       white_baseline_.col(n).segment(first_[i], basis.layout.size) =
           basis.white_baseline.col((n + static_cast<int>(i) * kShift) % ComparisonBasis::kPaired);
@@ -101,8 +103,20 @@ Comparison::Comparison(std::vector<ComparedRecord> records, int threads)
       usable[a] = usable[a] && !basis.atoms.col(static_cast<Eigen::Index>(a)).isZero(0.0);
     }
   }
+  for (Eigen::Index m = 0; m < moment_atoms_.cols(); ++m) {
+    const bool everywhere = std::none_of(records_.begin(), records_.end(), [&](const ComparedRecord& r) {
+      return r.basis->moment_atoms.col(m).isZero(0.0);
+    });
+    if (!everywhere) moment_atoms_.col(m).setZero();
+  }
   curves_ = effect_curves(dictionary(), usable);
   thresholds_ = combine(records_, atoms_, first_);
+}
+
+Matrix Comparison::atom_products() const {
+  Matrix out = records_.front().basis->atom_products;
+  for (std::size_t i = 1; i < records_.size(); ++i) out += records_[i].basis->atom_products;
+  return out;
 }
 
 Eigen::Index Comparison::first_group(std::size_t record) const {

@@ -44,11 +44,15 @@ class Comparison {
   [[nodiscard]] const Eigen::VectorXd& discrepancy() const { return discrepancy_; }
   /// Signatures, white, a column each; scaled to nothing.
   [[nodiscard]] const Eigen::MatrixXd& atoms() const { return atoms_; }
+  /// atoms()^T atoms().
+  [[nodiscard]] Eigen::MatrixXd atom_products() const;
   /// Changes along the sizes of the candidates with one parameter.
   [[nodiscard]] const std::vector<EffectCurve>& curves() const { return curves_; }
   /// Flexible modes on a fine grid, and their white signatures.
   [[nodiscard]] const std::vector<Atom>& resonances() const { return records_.front().basis->resonances; }
   [[nodiscard]] const Eigen::MatrixXd& resonance_atoms() const { return resonance_atoms_; }
+  /// White changes by higher_moments() (moment_filters.h), a column each; zero where one cannot be flown on every record.
+  [[nodiscard]] const Eigen::MatrixXd& moment_atoms() const { return moment_atoms_; }
 
   /// Mean change of the features by each set of effects, white, a column each, from `flights` flights with the baseline's
   /// noise: over those that do not leave the model, since the record did not; a set of which half cannot be flown on a record
@@ -80,7 +84,7 @@ class Comparison {
   int threads_;
   std::vector<Eigen::Index> first_;
   Eigen::VectorXd discrepancy_;
-  Eigen::MatrixXd atoms_, resonance_atoms_, white_baseline_;
+  Eigen::MatrixXd atoms_, resonance_atoms_, moment_atoms_, white_baseline_;
   std::vector<EffectCurve> curves_;
   Thresholds thresholds_;
 };

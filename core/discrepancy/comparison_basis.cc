@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "core/base/check.h"
+#include "core/discrepancy/moment_filters.h"
 #include "core/discrepancy/resonance.h"
 #include "core/ident/fast_lpm.h"
 
@@ -59,6 +60,21 @@ Result<NullFlights> fly_null(const ModelSimulator& model, const LpmGrid& grid, c
       },
       progress);
   if (!flown) return fail(flown.error());
+  return out;
+}
+
+Matrix moment_changes(const ModelSimulator& model, const Matrix& baseline, int threads,
+                      const FlightProgress& progress) {
+  constexpr int kFlights = ComparisonBasis::kBaseline;
+  std::vector<std::vector<Effect>> sets;
+  for (const Effect& moment : higher_moments()) sets.push_back({moment});
+  const std::vector<EffectFlights> flown = model.fly(sets, 0, kFlights, threads, progress);
+  Matrix out = Matrix::Zero(baseline.rows(), static_cast<Eigen::Index>(sets.size()));
+  for (std::size_t i = 0; i < flown.size(); ++i) {
+    if (!flown[i].usable()) continue;
+    out.col(static_cast<Eigen::Index>(i)) =
+        (flown[i].features - baseline.leftCols(kFlights)).rowwise().mean();
+  }
   return out;
 }
 
@@ -149,6 +165,10 @@ std::vector<FeatureGroup> feature_groups(const FeatureLayout& layout) {
 
 void ComparisonBasis::complete() {
   atoms = law.whiten(layout, dictionary.differences);
+  atom_products.setZero(atoms.cols(), atoms.cols());
+  atom_products.selfadjointView<Eigen::Lower>().rankUpdate(atoms.transpose());
+  atom_products.triangularView<Eigen::StrictlyUpper>() = atom_products.transpose();
+  moment_atoms = law.whiten(layout, moment_differences);
   white_baseline = law.whiten(layout, baseline.colwise() - law.mean);
   resonances.clear();
   std::vector<Matrix> parts;
@@ -178,7 +198,9 @@ Result<ComparisonBasis> ComparisonBasis::make(const ModelSimulator& model, const
   out.groups = feature_groups(out.layout);
   const int signatures = static_cast<int>(signature_effects(candidate_variants(options.excluded)).size());
   const int nuisances = static_cast<int>(options.nuisances.size());
-  const int total = options.flights + signatures * Dictionary::kFlights + nuisances * kBaseline;
+  const auto& moments = higher_moments();
+  const int total = options.flights + signatures * Dictionary::kFlights +
+                    (nuisances + static_cast<int>(moments.size())) * kBaseline;
   int before = 0;
   const FlightProgress stage = [&](int done, int) {
     if (progress) progress(before + done, total);
@@ -198,6 +220,8 @@ Result<ComparisonBasis> ComparisonBasis::make(const ModelSimulator& model, const
         nuisance.scale * (changed.features - out.baseline.leftCols(kBaseline)).rowwise().mean();
     before += kBaseline;
   }
+  out.moment_differences = moment_changes(model, out.baseline, options.threads, stage);
+  before += static_cast<int>(moments.size()) * kBaseline;
   out.dictionary = make_dictionary(model, options.excluded, out.baseline, options.threads, stage);
   out.law = NullLaw::fit(out.layout, flown->features);
   out.law.add_uncertainty(out.layout, uncertainty);

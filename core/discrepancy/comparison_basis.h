@@ -65,10 +65,14 @@ struct ComparisonBasis {
   Eigen::VectorXd
       baseline_variance;  ///< of every group, mean over its features: 1, less where a floor stands for it
   Dictionary dictionary;
-  Eigen::MatrixXd atoms;  ///< signatures, whitened by the law
+  Eigen::MatrixXd atoms;          ///< signatures, whitened by the law
+  Eigen::MatrixXd atom_products;  ///< atoms^T atoms
   /// Flexible modes on a fine grid (resonance.h): effect, index of its variant, white signature.
   std::vector<Atom> resonances;
   Eigen::MatrixXd resonance_atoms;
+  /// What higher_moments() (moment_filters.h) change, a column each; zero where one cannot be flown. No candidates: the probe
+  /// of level_probe.h reads them.
+  Eigen::MatrixXd moment_differences, moment_atoms;  ///< the latter whitened
   NullStatistics null;
   ResponseMap map;
 

@@ -37,7 +37,7 @@ void EffectCurve::add_slope(std::size_t i, double factor, std::vector<double>& s
   }
 }
 
-std::vector<AtomWeight> EffectCurve::change(double t) const {
+std::vector<double> EffectCurve::node_shares(double t) const {
   std::vector<double> share(nodes_.size(), 0.0);
   if (t <= first() || t >= last()) {
     const std::size_t end = t <= first() ? 0 : nodes_.size() - 1;
@@ -52,6 +52,29 @@ std::vector<AtomWeight> EffectCurve::change(double t) const {
     add_slope(i, h * s * (1.0 - s) * (1.0 - s), share);
     add_slope(i + 1, h * s * s * (s - 1.0), share);
   }
+  return share;
+}
+
+std::vector<int> EffectCurve::atoms() const {
+  std::vector<int> out;
+  for (const Node& node : nodes_) {
+    if (node.atom >= 0) out.push_back(node.atom);
+  }
+  return out;
+}
+
+Eigen::VectorXd EffectCurve::shares(double t) const {
+  const std::vector<double> share = node_shares(t);
+  Eigen::VectorXd out(static_cast<Eigen::Index>(atoms().size()));
+  Eigen::Index at = 0;
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    if (nodes_[i].atom >= 0) out[at++] = share[i];
+  }
+  return out;
+}
+
+std::vector<AtomWeight> EffectCurve::change(double t) const {
+  const std::vector<double> share = node_shares(t);
   std::vector<AtomWeight> out;
   for (std::size_t i = 0; i < share.size(); ++i) {
     if (share[i] != 0.0 && nodes_[i].atom >= 0) out.push_back({nodes_[i].atom, share[i]});

@@ -31,12 +31,17 @@ class EffectCurve {
   [[nodiscard]] double first() const { return nodes_.front().t; }
   [[nodiscard]] double last() const { return nodes_.back().t; }
   [[nodiscard]] std::vector<AtomWeight> change(double t) const;
+  /// Signatures of the nodes, ascending in t, and their shares in m(t) in the same order.
+  [[nodiscard]] std::vector<int> atoms() const;
+  [[nodiscard]] Eigen::VectorXd shares(double t) const;
   /// Sizes at which likelihoods are looked at: `parts` in every interval between nodes.
   [[nodiscard]] std::vector<double> places(int parts) const;
 
  private:
   /// Adds `factor` times the slope at node i.
   void add_slope(std::size_t i, double factor, std::vector<double>& share) const;
+  /// A share a node, nominal included.
+  [[nodiscard]] std::vector<double> node_shares(double t) const;
 
   int variant_;
   std::vector<Node> nodes_;

@@ -1,6 +1,7 @@
 #include "core/discrepancy/effect_knowledge.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace fatmc {
 
@@ -110,6 +111,13 @@ const EffectKnowledge* find_knowledge(std::string_view id) {
   const auto& all = effect_knowledge();
   const auto at = std::find_if(all.begin(), all.end(), [&](const EffectKnowledge& k) { return k.id == id; });
   return at == all.end() ? nullptr : &*at;
+}
+
+bool is_derivative(std::string_view id) {
+  constexpr std::string_view kDerivatives[] = {"lift_slope", "lift_of_elevator", "drag", "cm_alpha", "cm_q",
+                                               "cl_p",       "cl_beta",          "cl_r", "cn_beta",  "cn_r",
+                                               "cn_p",       "cy_beta"};
+  return std::find(std::begin(kDerivatives), std::end(kDerivatives), id) != std::end(kDerivatives);
 }
 
 std::string separating_experiment(const std::vector<std::string>& ids) {

@@ -17,6 +17,8 @@ struct EffectKnowledge {
 const std::vector<EffectKnowledge>& effect_knowledge();
 /// Null for an id without an entry.
 const EffectKnowledge* find_knowledge(std::string_view id);
+/// Aerodynamic derivatives of the linear airframe: control effectiveness, inertia, mass and geometry are none.
+bool is_derivative(std::string_view id);
 /// The experiment that would separate effects of these ids, one sentence.
 std::string separating_experiment(const std::vector<std::string>& ids);
 

@@ -17,13 +17,8 @@ using Vector = Eigen::VectorXd;
 /// Squared change of what is held back, in deviations, from which on it must be a change for the better: three deviations.
 constexpr double kVisible = 9.0;
 
-/// A candidate is tried while its gain along the dictionary is within these of the leader's: interpolation and few flights err by
-/// a hundredth of the discrepancy's energy at most.
-constexpr double kCloseGain = 4.0 * kClassGain, kCloseShare = 0.01;
 /// Where nothing close is adequate, up to this share of its gain.
 constexpr double kFarShare = 0.5;
-/// A rival of an effect in a set that is not adequate: the linear model behind its gain errs by more.
-constexpr double kSwapShare = 0.05;
 /// A step of the estimate that gains more than this is taken by flights again, a smaller one by the linear model.
 constexpr double kLinearGain = 25.0;
 /// What is above its limits by less than these factors may be so because the law is of few flights.
@@ -34,22 +29,30 @@ constexpr int kConfirmingFlights = 64;
 
 EffectSelection::EffectSelection(const Comparison& comparison, const Comparison* holdout,
                                  const DiagnosisOptions& options)
-    : comparison_(comparison), holdout_(holdout), options_(options) {
+    : comparison_(comparison),
+      holdout_(holdout),
+      options_(options),
+      tolerance_(comparison, options.excluded),
+      nothing_{{}, FittedLaw(comparison)} {
   excess_ = std::max(0.0, comparison.discrepancy().squaredNorm() - comparison.thresholds().energy_mean);
   local_ = comparison.local_score(comparison.discrepancy());
   if (holdout == nullptr) {
     training_ = comparison.training_rows();
     held_ = comparison.held_out_rows();
   }
+  nothing_ = model_alone();
+  if (!options.nuisances.empty()) {
+    if (auto fitted = explained(options.nuisances, nothing_.law)) nothing_ = std::move(*fitted);
+  }
 }
 
-Explanation EffectSelection::nothing() const {
+Explanation EffectSelection::model_alone() const {
   Explanation out{{}, FittedLaw(comparison_)};
   out.fit.ending = EffectFit::Ending::converged;
   out.fit.residual = comparison_.discrepancy();
   out.fit.cost = out.fit.residual.squaredNorm();
   out.fit.jacobian.resize(comparison_.size(), 0);
-  out.adequate = is_adequate(out);
+  judge(out);
   return out;
 }
 
@@ -83,19 +86,19 @@ std::optional<Explanation> EffectSelection::judged(EffectFit fit, bool confirm) 
   for (int round = 0; fit.usable() && round < 2; ++round) {
     auto law = FittedLaw::of(comparison_, fit.effects, FittedLaw::kFlights);
     if (!law) return std::nullopt;
-    Explanation out{std::move(fit), std::move(*law)};
+    Explanation out{std::move(fit), std::move(*law), options_.nuisances.size()};
     const double gain = take_linear_step(out);
     if (gain > kLinearGain && round == 0) {
       fit = fit_effects(comparison_, out.fit.effects, out.law.deviation(), options);
       continue;
     }
-    out.adequate = is_adequate(out);
+    judge(out);
     if (confirm && !out.adequate && is_nearly_adequate(out)) {
       // The law of few flights is itself uncertain: looked at again with more of them before the answer is "unknown".
       if (auto more = FittedLaw::of(comparison_, out.fit.effects, kConfirmingFlights)) {
         out.law = std::move(*more);
         take_linear_step(out);
-        out.adequate = is_adequate(out);
+        judge(out);
       }
     }
     return out;
@@ -156,7 +159,7 @@ double EffectSelection::required_gain(const Effect& effect, const FittedLaw& law
 bool EffectSelection::accepted(const Explanation& without, const Explanation& with) const {
   const Effect& added = with.fit.effects.back();
   const double gain = cost(without, with.law) - with.fit.cost;
-  if (gain < required_gain(added, without.law, without.fit.effects.empty())) return false;
+  if (gain < required_gain(added, without.law, without.named() == 0)) return false;
   if (relative_size(added) < kMaterialSize) return false;
   // With another effect still missing, a fit of one may well raise the error where the other acts.
   if (!with.adequate) return true;
@@ -202,6 +205,25 @@ bool EffectSelection::is_adequate(const Explanation& e) const {
              limit.local + kResolution * std::max(0.0, local_);
 }
 
+bool EffectSelection::is_tolerable(const Explanation& e) const {
+  const Thresholds& limit = comparison_.thresholds();
+  const DerivativeTolerance::Errors errors = derivative_errors(e);
+  return errors.energy <= limit.energy + e.law.excess() + kResolution * excess_ &&
+         comparison_.local_score(errors.residual, e.law.group_excess()) <=
+             limit.local + kResolution * std::max(0.0, local_);
+}
+
+DerivativeTolerance::Errors EffectSelection::derivative_errors(const Explanation& e) const {
+  return tolerance_.errors(e.fit.effects, e.weighted_residual(), e.weighted_jacobian(), e.law.deviation());
+}
+
+// That derivatives are off is no explanation of its own: what was detected and is that is found as an effect.
+void EffectSelection::judge(Explanation& e) const {
+  const bool strictly = is_adequate(e);
+  e.tolerated = !strictly && e.named() > 0 && is_tolerable(e);
+  e.adequate = strictly || e.tolerated;
+}
+
 bool EffectSelection::is_nearly_adequate(const Explanation& e) const {
   const Thresholds& limit = comparison_.thresholds();
   const Vector r = e.weighted_residual();
@@ -213,7 +235,7 @@ bool EffectSelection::is_nearly_adequate(const Explanation& e) const {
 std::optional<Explanation> EffectSelection::without(const Explanation& e, std::size_t effect) const {
   std::vector<Effect> left = e.fit.effects;
   left.erase(left.begin() + static_cast<std::ptrdiff_t>(effect));
-  if (left.empty()) return nothing();
+  if (left.size() == e.nuisances) return nothing();
   return explained(left, e.law);
 }
 
@@ -243,39 +265,6 @@ EffectSelection::Alternative EffectSelection::alternative(const Explanation& e, 
     gain = std::max(gain, c.gain);
   }
   return out;
-}
-
-Explanation EffectSelection::pruned(Explanation full) const {
-  for (std::size_t e = 0; full.fit.effects.size() > 1 && e < full.fit.effects.size();) {
-    // Far above what is required it needs no flights to know that the effect stays.
-    if (alternative(full, e).own > 3.0 * required_gain(full.fit.effects[e], full.law, false)) {
-      ++e;
-      continue;
-    }
-    auto less = without(full, e);
-    if (less &&
-        cost(*less, full.law) - full.fit.cost < required_gain(full.fit.effects[e], less->law, false)) {
-      full = std::move(*less);
-      e = 0;
-    } else {
-      ++e;
-    }
-  }
-  return full;
-}
-
-Explanation EffectSelection::exchanged(Explanation full) const {
-  for (std::size_t e = 0; full.fit.effects.size() > 1 && e < full.fit.effects.size(); ++e) {
-    const Alternative other = alternative(full, e);
-    if (other.rival < other.own - kCloseGain - (full.adequate ? kCloseShare : kSwapShare) * other.own)
-      continue;
-    const auto less = without(full, e);
-    if (!less) continue;
-    std::vector<Explanation> rivals = extended(*less, false);
-    if (!rivals.empty() && cost(rivals.front(), full.law) < full.fit.cost - 1.0)
-      full = std::move(rivals.front());
-  }
-  return full;
 }
 
 }  // namespace fatmc

@@ -42,6 +42,8 @@ std::string_view name(FeatureKind kind) {
       return "lattice";
     case FeatureKind::controller:
       return "controller";
+    case FeatureKind::moment:
+      return "moment";
   }
   return "?";
 }
@@ -88,6 +90,19 @@ Result<FeatureLayout> FeatureLayout::create(PeriodicExperiment experiment, bool 
   build.add(FeatureKind::lattice, range(0, 3), -1, 0.0, 0.0);
   if (controller) build.add(FeatureKind::controller, range(0, attitude && airspeed ? 7 : 6), -1, 0.0, 0.0);
   out.experiment = std::move(experiment);
+  return out;
+}
+
+FeatureLayout FeatureLayout::with_moments(const std::vector<Effect>& moments) const {
+  FeatureLayout out = *this;
+  if (moments.empty()) return out;
+  std::vector<int> axes;
+  for (const Effect& moment : moments) {
+    const auto& names = moment.kind().choices.front().values;
+    const auto at = std::find(names.begin(), names.end(), moment.choices.front().second);
+    axes.push_back(static_cast<int>(at - names.begin()));
+  }
+  Builder{out}.add(FeatureKind::moment, std::move(axes), -1, 0.0, 0.0);
   return out;
 }
 

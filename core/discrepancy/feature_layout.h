@@ -12,6 +12,7 @@
 //   lattice     log of samples over distinct values of p, q, r: quantisation
 //   controller  what the logged commands show of u = k (r - y) + o: gains over the stated ones, minus one; offsets; the turn
 //               coordinator's gain
+//   moment      outputs of filters for moments that grow faster than the motion (moment_filters.h); of the axis they act on
 // Attitude and airspeed are left out where they were not measured.
 #pragma once
 
@@ -19,11 +20,12 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/flight/effects/effect.h"
 #include "core/ident/lpm_grid.h"
 
 namespace fatmc {
 
-enum class FeatureKind { line, dc, noise, peak, distortion, lattice, controller };
+enum class FeatureKind { line, dc, noise, peak, distortion, lattice, controller, moment };
 std::string_view name(FeatureKind kind);
 
 /// Features that belong together: their covariance is estimated as one full matrix.
@@ -55,6 +57,8 @@ struct FeatureLayout {
   /// Fails where the experiment leaves too few non-excited bins to tell noise from response.
   static Result<FeatureLayout> create(PeriodicExperiment experiment, bool attitude, bool airspeed,
                                       bool controller);
+  /// The same with a block of features behind all others, one a moment (effects with a choice of axis).
+  [[nodiscard]] FeatureLayout with_moments(const std::vector<Effect>& moments) const;
   /// Non-excited bins taken for the transient of a line, and the degree of their polynomial.
   static constexpr int kTransientBins = 10, kTransientOrder = 2;
 };

@@ -116,11 +116,17 @@ void FittedLaw::measure_scan() {
 }
 
 FittedLaw::Spread FittedLaw::spread(const Eigen::Ref<const Matrix>& a) const {
+  const Matrix all = centred(a * comparison_->white_baseline());
+  const auto many = static_cast<double>(all.cols());
+  Spread out{Vector(a.rows()), Vector::Constant(a.rows(), many - 1.0)};
+  if (with_.cols() == 0) {  // the model as it is
+    out.deviation =
+        (all.rowwise().squaredNorm() / (many - 1.0)).cwiseMax(a.rowwise().squaredNorm()).cwiseSqrt();
+    return out;
+  }
   FATMC_CHECK(with_.cols() > 3, "flights with the effects");
   const Matrix with = a * with_, without = a * without_;
-  const Matrix all = centred(a * comparison_->white_baseline());
-  const auto flights = static_cast<double>(with_.cols()), many = static_cast<double>(all.cols());
-  Spread out{Vector(a.rows()), Vector(a.rows())};
+  const auto flights = static_cast<double>(with_.cols());
   for (Eigen::Index i = 0; i < a.rows(); ++i) {
     const double bb = without.row(i).squaredNorm(), length = a.row(i).squaredNorm();
     // Where flights show nothing but rounding, floors stand for everything and the effects leave them.

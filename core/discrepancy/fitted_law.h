@@ -41,7 +41,8 @@ class FittedLaw {
   /// How much larger the largest signature GLR of a flight with the effects is in the mean, both in their own coordinates;
   /// not below 1.
   [[nodiscard]] double scan_ratio() const { return scan_ratio_; }
-  /// Standard deviation of every row of A r, r the residual of a record by change(), and degrees of freedom behind it.
+  /// Standard deviation of every row of A r, r the residual of a record by change(), and degrees of freedom behind it. For the model
+  /// as it is: that over its kept flights, not below the law's.
   struct Spread {
     Eigen::VectorXd deviation, dof;
   };

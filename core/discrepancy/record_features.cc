@@ -42,14 +42,6 @@ double repetition(std::span<const double> x) {
   return std::log(static_cast<double>(x.size()) / static_cast<double>(distinct));
 }
 
-/// x without the straight line from its first to its last sample, its mean kept. A record that ends elsewhere than it began has
-/// a step where the DFT closes it, whose power falls with f^-2 only and would hide the gyros' noise.
-void level_ends(std::span<const double> x, std::vector<double>& out) {
-  const double slope = (x.back() - x.front()) / static_cast<double>(x.size() - 1);
-  const double middle = 0.5 * static_cast<double>(x.size() - 1);
-  for (std::size_t i = 0; i < x.size(); ++i) out[i] = x[i] - slope * (static_cast<double>(i) - middle);
-}
-
 struct BandPower {
   double sum = 0.0, largest = 0.0;
   int count = 0;
@@ -63,6 +55,20 @@ struct BandPower {
 constexpr double kLeastPower = 1e-300;  // the log of a channel that stands still stays finite
 
 }  // namespace
+
+void level_ends(std::span<const double> x, std::vector<double>& out) {
+  const double slope = (x.back() - x.front()) / static_cast<double>(x.size() - 1);
+  const double middle = 0.5 * static_cast<double>(x.size() - 1);
+  out.resize(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) out[i] = x[i] - slope * (static_cast<double>(i) - middle);
+}
+
+FeatureExtractor FeatureExtractor::with(std::shared_ptr<const MomentFilters> filters) const {
+  FeatureExtractor out = *this;
+  out.layout_ = layout_.with_moments(filters->moments);
+  out.filters_ = std::move(filters);
+  return out;
+}
 
 FeatureExtractor::FeatureExtractor(FeatureLayout layout, const Eigen::Vector3d& gain)
     : layout_(std::move(layout)),
@@ -99,10 +105,21 @@ void FeatureExtractor::spectra(const LoopRecord& record, Eigen::VectorXd& out) c
   const int periods = layout_.experiment.periods;
   const double bin_hz = layout_.experiment.rate_hz / n;
   std::vector<std::complex<double>> bins(static_cast<std::size_t>(n / 2 + 1));
-  std::vector<double> samples(static_cast<std::size_t>(n));
+  std::vector<double> samples;
+  const Eigen::Index moments = filters_ == nullptr ? 0 : static_cast<Eigen::Index>(filters_->moments.size());
+  if (moments > 0) out.tail(moments).setZero();  // the layout's last block
   for (int c = 0; c < static_cast<int>(layout_.channels.size()); ++c) {
     level_ends(channel(record, c, layout_.attitude), samples);
     dft_.transform(samples, bins);
+    for (Eigen::Index i = 0; c < 3 && i < moments; ++i) {
+      const auto weight = filters_->weights[static_cast<std::size_t>(i)].col(c);
+      double& sum = out[layout_.size - moments + i];
+      for (std::size_t b = 0; b < filters_->bins.size(); ++b) {
+        const std::complex<double> w = weight[static_cast<Eigen::Index>(b)];
+        const std::complex<double> y = bins[static_cast<std::size_t>(filters_->bins[b])];
+        sum += w.real() * y.real() + w.imag() * y.imag();
+      }
+    }
     for (const FeatureBlock& block : layout_.blocks) {
       const auto at = std::find(block.channels.begin(), block.channels.end(), c);
       if (at == block.channels.end()) continue;

@@ -2,7 +2,9 @@
 """fatmc diagnose against numpy: features from the record's CSV, covariance as a dense matrix, likelihood ratios by solving it.
 
 Read from the program's basis (core/discrepancy/basis_file.h) are only mean, Cholesky factors, low-rank columns and signatures;
-what is made of them, and the features themselves, is computed here in another way. Usage: diagnosis_reference.py FATMC
+what is made of them, and the features themselves, is computed here in another way. Outputs of the filters for higher moments are
+taken from the program where energies are compared, and compared with a filter of this script's own flights on a record that hides
+such a moment. Usage: diagnosis_reference.py FATMC
 """
 import csv
 import glob
@@ -112,21 +114,41 @@ def features(record):
     return np.array(out), sizes
 
 
-def check(seed):
-    flight = place(f"flight{seed}.csv")
-    run("simulate", "campaigns/models/fat.toml", EXPERIMENT, "--seed", str(seed), "-o", flight)
-    with open(place(f"flight{seed}.toml"), "a", encoding="utf-8") as file:
-        file.write('[environment]\nturbulence_sigma_m_s = 0.5\nimu_grade = "tactical"\n')
-    out = place(f"out{seed}")
-    run("diagnose", "--model", "campaigns/models/fat.toml", "--record", flight, "--flights", "300", "-o", out, "--cache", out + "-cache",
-        "--exclude", "flexible_mode,slosh,rate_limit,position_limit")
-    with open(os.path.join(out, "diagnosis.json"), encoding="utf-8") as file:
-        evidence = json.load(file)["evidence"]
-    with open(flight, encoding="utf-8") as file:
+def flown(name, seed, *effects, experiment=EXPERIMENT):
+    """A record of the simulator, column by column; its path is place(name + ".csv")."""
+    path = place(name + ".csv")
+    options = [word for effect in effects for word in ("--effect", effect)]
+    run("simulate", "campaigns/models/fat.toml", experiment, "--seed", str(seed), "-o", path, *options)
+    with open(path, encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    record = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+    return {column: np.array([float(row[column]) for row in rows]) for column in rows[0]}
+
+
+def diagnosed(name):
+    """Evidence of the diagnosis of a record, and the path of its basis."""
+    with open(place(name + ".toml"), "a", encoding="utf-8") as file:
+        file.write('[environment]\nturbulence_sigma_m_s = 0.5\nimu_grade = "tactical"\n')
+    out = place(name + "-out")
+    run("diagnose", "--model", "campaigns/models/fat.toml", "--record", place(name + ".csv"), "--flights", "300", "-o", out, "--cache",
+        out + "-cache", "--exclude", "flexible_mode,slosh,rate_limit,position_limit")
+    with open(os.path.join(out, "diagnosis.json"), encoding="utf-8") as file:
+        return json.load(file)["evidence"], glob.glob(out + "-cache/*.basis")[0]
+
+
+def rate_spectra(record):
+    """DFT of p, q, r without the line from first to last sample, a row a bin."""
+    n = PERIOD * PERIODS
+    ramp = np.arange(n) / (n - 1) - 0.5
+    return np.stack([np.fft.fft(record[c] - (record[c][-1] - record[c][0]) * ramp) / np.sqrt(n) for c in "pqr"]).T
+
+
+def check(seed):
+    record = flown(f"flight{seed}", seed)
+    evidence, path = diagnosed(f"flight{seed}")
     x, sizes = features(record)
-    basis = Basis(glob.glob(out + "-cache/*.basis")[0], len(sizes))
+    x = np.concatenate([x, [m["value"] for m in evidence["moments"]]])
+    sizes.append(len(evidence["moments"]))
+    basis = Basis(path, len(sizes))
     assert [len(m) for m in basis.inverse_factor] == sizes, "blocks"
     assert len(basis.mean) == len(x), (len(basis.mean), len(x))
 
@@ -149,4 +171,39 @@ def check(seed):
     assert abs(ratios.max() - evidence["scan"]["value"]) < 1e-5 * max(1.0, ratios.max())
 
 
+def check_moments(seed, moment):
+    """The filter of a moment by this script's own flights: the same output on a record with ten times that moment."""
+    name, size = moment
+    record = flown("hidden", seed, f"{name},ratio={10 * size}")
+    evidence, _ = diagnosed("hidden")
+    value = next(m["value"] for m in evidence["moments"] if m["moment"] == name)
+    with open(EXPERIMENT, encoding="utf-8") as file:
+        calm = file.read().replace("turbulence_sigma_m_s = 0.5", "turbulence_sigma_m_s = 0.0").replace('"tactical"', '"none"')
+    with open(place("calm.toml"), "w", encoding="utf-8") as file:
+        file.write(calm)
+    plain = flown("plain", seed, experiment=place("calm.toml"))
+    assert np.array_equal(plain["r_p"], record["r_p"]), "one reference"
+    moved = flown("moved", seed, f"{name},ratio={size}", experiment=place("calm.toml"))
+    difference = rate_spectra(moved) - rate_spectra(plain)
+    noise = [rate_spectra(flown(f"noise{k}", 100 + k)) for k in range(20)]
+    y = rate_spectra(record)
+    output = energy = 0.0
+    for harmonic in range(1, min((PERIOD - 1) // 2, 4 * LINES[-1]) + 1):
+        if harmonic in LINES:
+            continue
+        at = PERIODS * harmonic
+        around = [m for m in range(max(1, at - 15), at + 16) if m % PERIODS]
+        samples = np.concatenate([flight[around] for flight in noise])
+        cov = samples.T @ samples.conj() / len(samples)  # E y y^H
+        solved = np.linalg.solve(cov, difference[at])
+        output += 2 * (np.conj(solved) @ y[at]).real
+        energy += 2 * (np.conj(difference[at]) @ solved).real
+    output /= np.sqrt(energy)
+    print(f"{name}: filter of this script {output:.3f}, of the program {value:.3f}; of ratio {size} {np.sqrt(energy):.3f} is expected")
+    # Filters of two estimates of the noise, each uncertain by a tenth: outputs differ by a part of a deviation.
+    assert abs(value) > 4.0, "the moment shows"
+    assert abs(output - value) < 0.5 + 0.1 * abs(value)
+
+
 check(1)
+check_moments(2, ("quadratic_damping:axis=roll", 0.2))

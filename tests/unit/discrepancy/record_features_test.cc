@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "core/discrepancy/null_law.h"
@@ -150,6 +151,33 @@ TEST(NullLaw, WhitensWhatItHasNotSeen) {
   // An element of the sample covariance has the error (2/N)^(1/2); twice that for the law's own, five of them for 36.
   EXPECT_LT((covariance - Eigen::MatrixXd::Identity(6, 6)).cwiseAbs().maxCoeff(),
             5.0 * 2.0 * std::sqrt(2.0 / (flights / 2.0)));
+}
+
+TEST(RecordFeatures, AMomentIsTheFilteredSpectrumOfHarmonicsThatAreNotExcited) {
+  const FeatureLayout plain = layout();
+  const int quiet = plain.experiment.lines[3] + 1;
+  auto filters = std::make_shared<MomentFilters>();
+  filters->moments = {*parse_effect("quadratic_damping:axis=pitch,ratio=0.2")};
+  filters->bins = {kPeriods * quiet};
+  filters->weights = {Eigen::MatrixX3cd::Zero(1, 3)};
+  filters->weights[0](0, 1) = {0.4, -0.3};
+  const FeatureExtractor extractor =
+      FeatureExtractor(plain, Eigen::Vector3d::Constant(0.1)).with(std::move(filters));
+  const FeatureBlock& b = block(extractor.layout(), FeatureKind::moment);
+  EXPECT_EQ(b.channels, (std::vector<int>{1})) << "of pitch";
+  EXPECT_EQ(b.first + b.size(), extractor.layout().size);
+  // q = 0.3 cos(2 pi k (n + 1/2) / N): Y = 0.3 sqrt(N)/2 exp(j pi k/N); the filter gives Re(conj(w) Y).
+  const auto output_at = [&](int harmonic) {
+    LoopRecord record = still();
+    for (Eigen::Index i = 0; i < record.output.rows(); ++i) {
+      record.output(i, 1) =
+          0.3 * std::cos(2.0 * std::numbers::pi * harmonic * (static_cast<double>(i) + 0.5) / kPeriod);
+    }
+    return extractor.extract(record)[b.first];
+  };
+  const double size = 0.3 * std::sqrt(kPeriod * kPeriods) / 2.0, phase = std::numbers::pi * quiet / kPeriod;
+  EXPECT_NEAR(output_at(quiet), size * (0.4 * std::cos(phase) - 0.3 * std::sin(phase)), 1e-10);
+  EXPECT_NEAR(output_at(quiet - 1), 0.0, 1e-10) << "an excited line is none of its business";
 }
 
 }  // namespace
