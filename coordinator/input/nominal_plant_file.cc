@@ -73,7 +73,7 @@ Result<NominalPlant> stable_plant(const NamedModel& named, const std::string& ki
   return out;
 }
 
-Result<NominalPlant> response_plant(const std::string& csv, const MeasuredLoop& measured) {
+Result<NominalPlant> response_plant(const std::string& csv, bool diagonal, const MeasuredLoop& measured) {
   const Result<ResponseTable> table = read_response_table(csv);
   if (!table) return fail(table.error());
   const auto inputs = channel_places(measured.inputs, table->inputs, "input", csv);
@@ -93,6 +93,11 @@ Result<NominalPlant> response_plant(const std::string& csv, const MeasuredLoop& 
                                                     " Hz, a line of the record: a nominal response needs all of them"});
     }
     out.loop.response[k] = table->response[static_cast<int>(at - table->frequency_hz.begin())](*outputs, *inputs);
+    for (std::size_t i = 0; diagonal && i < outputs->size(); ++i) {
+      for (std::size_t j = 0; j < inputs->size(); ++j) {
+        if ((*outputs)[i] != (*inputs)[j]) out.loop.response[k](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = 0.0;
+      }
+    }
   }
   return out;
 }
@@ -101,7 +106,7 @@ Result<NominalPlant> response_plant(const std::string& csv, const MeasuredLoop& 
 
 Result<NominalPlant> read_nominal_plant(const std::string& path, const MeasuredLoop& measured) {
   const std::filesystem::path named(path);
-  if (named.extension() == ".csv") return response_plant(path, measured);
+  if (named.extension() == ".csv") return response_plant(path, false, measured);
   const Result<Tree> tree = read_toml(path);
   if (!tree) return fail(tree.error());
   Decoder kinds(*tree, "");
@@ -110,9 +115,11 @@ Result<NominalPlant> read_nominal_plant(const std::string& path, const MeasuredL
   if (kind == "frf") {
     Decoder table(*tree, "");
     table.text("kind");
-    const std::string file = table.text("file");
+    const std::string file = table.text("response");
+    const bool diagonal = table.choice("elements", {"all", "diagonal"}, "all") == "diagonal";
+    table.skip("band_hz");  // of diagnose
     if (Status status = table.finish(); !status) return fail(status.error());
-    return response_plant((named.parent_path() / file).string(), measured);
+    return response_plant((named.parent_path() / file).string(), diagonal, measured);
   }
   std::vector<std::string> not_shown;
   const Result<NamedModel> model =

@@ -174,7 +174,7 @@ def check_closed_loop(fatmc, folder):
                     file.write(f"{line},{float(reference.frequency[n])!r},{roles['output'][i]},{roles['input'][j]},"
                                f"{float(g0[n, i, j].real)!r},{float(g0[n, i, j].imag)!r}\n")
     with open(listed, "w", encoding="utf-8") as file:
-        file.write('kind = "frf"\nfile = "response.csv"\n')
+        file.write('kind = "frf"\nresponse = "response.csv"\n')
     products = set()
     for rule, bias, intergrid in (("min", "on", 0.03), ("bonferroni", "on", 0.03), ("min", "off", 0.0), ("min", "on", 0.6),
                                   ("bonferroni", "off", 0.75), ("min", "constant", 0.03)):
@@ -185,6 +185,10 @@ def check_closed_loop(fatmc, folder):
     for nominal in (table, listed):
         stability(fatmc, record, meta, nominal, folder, "--gain", "0.1")
         reference.compare("closed loop, frf", folder, g0, "min", "on", 0.03)
+    with open(listed, "a", encoding="utf-8") as file:  # as diagnose takes it
+        file.write('elements = "diagonal"\nband_hz = [0.5, 2.0]\n')
+    stability(fatmc, record, meta, listed, folder, "--gain", "0.1")
+    reference.compare("closed loop, diagonal of an frf", folder, g0 * np.eye(3), "min", "on", 0.03)
 
 
 def check_flight(fatmc, folder):
