@@ -42,6 +42,8 @@ plot::Axis names_axis(const std::string& label, const std::vector<std::string>& 
 }  // namespace
 
 StudyFigure confusion_figure(const CellResults& cell) {
+  // Of an effect that no candidate is, "unknown" is the right answer.
+  const bool no_candidate = cell.tier.role == Role::unknown;
   std::map<std::pair<std::string, std::string>, std::uint64_t> counts;
   std::map<std::string, std::uint64_t> totals;
   std::set<std::string> hidden_ids, answers;
@@ -52,19 +54,19 @@ StudyFigure confusion_figure(const CellResults& cell) {
     counts[{hidden, answer}] += n;
     totals[hidden] += n;
     hidden_ids.insert(hidden);
-    answers.insert(hidden);  // a column of its own, so that the diagonal is one
+    if (!no_candidate) answers.insert(hidden);  // a column of its own, so that the diagonal is one
     answers.insert(answer);
   }
   std::vector<std::string> rows = ordered(hidden_ids);
   std::reverse(rows.begin(), rows.end());  // the first on top
   const std::vector<std::string> columns = ordered(answers);
-  plot::Cells right{"right name", {}, {}, {}, plot::Hue::green},
+  plot::Cells right{no_candidate ? "right answer: unknown" : "right name", {}, {}, {}, plot::Hue::green},
       wrong{"anything else", {}, {}, {}, plot::Hue::orange};
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (std::size_t c = 0; c < columns.size(); ++c) {
       const auto at = counts.find({rows[r], columns[c]});
       if (at == counts.end()) continue;
-      plot::Cells& into = rows[r] == columns[c] ? right : wrong;
+      plot::Cells& into = columns[c] == (no_candidate ? "unknown" : rows[r]) ? right : wrong;
       into.x.push_back(static_cast<double>(c));
       into.y.push_back(static_cast<double>(r));
       into.share.push_back(static_cast<double>(at->second) / static_cast<double>(totals.at(rows[r])));

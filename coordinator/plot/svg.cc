@@ -61,7 +61,7 @@ double letters(const std::string& text) {
 double label_room(const Axis& axis) {
   double longest = 0.0;
   for (const std::string& label : axis.tick_labels) longest = std::max(longest, letters(label));
-  return kCharacter * longest + 8.0;
+  return 1.15 * kCharacter * longest + 8.0;  // labels in capitals or of wide letters, too
 }
 
 std::string upright(double x, double y, const std::string& text) {
@@ -148,7 +148,7 @@ std::string document(const Figure& figure, const std::string& style, const std::
   const int rows = (static_cast<int>(figure.panels.size()) + figure.columns - 1) / figure.columns;
   // A title or a note that is longer than the panels are wide is not cut off.
   const double width = std::max({figure.columns * figure.panel_width + kEdge,
-                                 1.25 * kCharacter * letters(figure.title) + 2.0 * kEdge,
+                                 1.4 * kCharacter * letters(figure.title) + 2.0 * kEdge,
                                  kCharacter * letters(figure.note) + 2.0 * kEdge});
   double top = kEdge;
   std::string body;

@@ -52,5 +52,17 @@ TEST(ConfusionFigure, HasRightNamesOnItsDiagonalAndEveryRowSumsToOne) {
   EXPECT_NEAR(*std::min_element(right.share.begin(), right.share.end()), 0.25, 1e-12);
 }
 
+TEST(ConfusionFigure, OfEffectsWithoutACandidateUnknownIsTheRightAnswer) {
+  CellResults cell;
+  cell.name = "out";
+  cell.tier.role = Role::unknown;
+  const int delay = place("transport_delay"), mass = place("mass");
+  cell.confusion = {{{delay, CellResults::kUnknown}, 3}, {{delay, mass}, 1}};
+  const StudyFigure figure = confusion_figure(cell);
+  EXPECT_EQ(figure.figure.panels.front().x.tick_labels, (std::vector<std::string>{"mass", "unknown"}));
+  EXPECT_EQ(cells(figure, "right answer: unknown").share, std::vector<double>{0.75});
+  EXPECT_EQ(cells(figure, "anything else").share, std::vector<double>{0.25});
+}
+
 }  // namespace
 }  // namespace fatmc::hidden_effect
