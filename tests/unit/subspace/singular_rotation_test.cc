@@ -27,11 +27,11 @@ TEST(SingularRotation, IsThatOfTheFullDecomposition) {
     ASSERT_TRUE(rotate_to_singular_directions(triangle, rhs, s));
     EXPECT_LT((s - svd.singularValues()).norm(), 1e-13 * s(0)) << size;
     // The sign of a singular vector is free: products of its columns are not.
-    EXPECT_LT((rhs.array().colwise() * rhs.col(0).array() -
-               expected.array().colwise() * expected.col(0).array())
-                  .matrix()
-                  .norm(),
-              1e-10 * rhs.squaredNorm())
+    EXPECT_LT(
+        (rhs.array().colwise() * rhs.col(0).array() - expected.array().colwise() * expected.col(0).array())
+            .matrix()
+            .norm(),
+        1e-10 * rhs.squaredNorm())
         << size;
   }
 }
